@@ -1,0 +1,2 @@
+//! The seamstress command.
+fn main() {}

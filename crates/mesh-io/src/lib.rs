@@ -1,0 +1,50 @@
+//! Reading and writing meshes and maps for Seamstress: OBJ, OFF, PLY and STL.
+//!
+//! [`read_mesh`] and [`parse_mesh`] turn a file into a neutral [`PolygonMesh`]: positions and
+//! polygons exactly as stored (STL corners are welded by exact position), and typed [`Note`]s about
+//! everything that was left out. Whatever the input, they return a mesh or a [`ReadError`] that names
+//! the file, the line or byte, what was found and what was expected; time and memory are linear in
+//! the size of the file, whatever its header announces. Geometry and topology are not judged here.
+//!
+//! [`write_map_obj`] and [`write_singularities`] write results, and [`AtomicFile`] puts a file in
+//! place only when it is complete.
+//!
+//! The readers are our own because `tobj`, `ply-rs` and `stl_io` do not tell the line or byte of a
+//! fault and trust the counts in a header.
+//!
+//! ```
+//! let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+//! let mesh = seamstress_io::parse_mesh(text, None, "triangle.obj")?;
+//! assert_eq!(mesh.polygons.get(0), [0, 1, 2]);
+//!
+//! let fault = seamstress_io::parse_mesh(b"v 0 0 0\nf 1 2 3\n", None, "broken.obj").unwrap_err();
+//! assert_eq!(
+//!     fault.to_string(),
+//!     "broken.obj, line 2: vertex index 2 is out of range: the file has 1 vertex"
+//! );
+//! # Ok::<(), seamstress_io::ReadError>(())
+//! ```
+
+mod atomic;
+mod error;
+mod format;
+mod mesh;
+mod note;
+mod obj;
+mod obj_index;
+mod off;
+mod ply;
+mod ply_data;
+mod ply_header;
+mod read;
+mod stl;
+mod text;
+mod write;
+
+pub use atomic::{AtomicFile, WriteError};
+pub use error::{Missing, Position, ReadError, ReadErrorKind};
+pub use format::Format;
+pub use mesh::{CornerUvs, PolygonMesh, Polygons};
+pub use note::Note;
+pub use read::{parse_mesh, read_mesh};
+pub use write::{MapObj, write_map_obj, write_singularities};

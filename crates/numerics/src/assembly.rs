@@ -1,0 +1,160 @@
+//! Sums of small dense blocks into a sparse symmetric matrix, in parallel and always in one order.
+
+use crate::pattern::{Pattern, PatternBuilder};
+use rayon::prelude::*;
+
+/// Where the entries of local blocks go: elements with a few unknowns each, coupled all with all.
+///
+/// A local block is the lower triangle of a symmetric matrix by rows, `(i, j)` with `i >= j` at
+/// `i (i + 1) / 2 + j`, in the element's own order of unknowns; blocks lie one after the other.
+/// Each matrix entry *gathers* its contributions in a fixed order, so that the sum does not depend on
+/// the number of threads.
+#[derive(Debug, Clone)]
+pub struct Assembly {
+    pattern: Pattern,
+    /// Start of each element in `unknowns`; one more than the number of elements.
+    element_offsets: Vec<u32>,
+    unknowns: Vec<u32>,
+    /// Start of each element's block.
+    block_offsets: Vec<u32>,
+    matrix: Gather,
+    vector: Gather,
+}
+
+/// For each target the positions of its contributions.
+#[derive(Debug, Clone, Default)]
+struct Gather {
+    offsets: Vec<u32>,
+    sources: Vec<u32>,
+}
+
+impl Gather {
+    fn new(n_targets: usize, target_of_source: &[u32]) -> Self {
+        let mut offsets = vec![0u32; n_targets + 1];
+        for &t in target_of_source {
+            offsets[t as usize + 1] += 1;
+        }
+        for i in 0..n_targets {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut fill = offsets.clone();
+        let mut sources = vec![0u32; target_of_source.len()];
+        for (source, &t) in target_of_source.iter().enumerate() {
+            sources[fill[t as usize] as usize] = source as u32;
+            fill[t as usize] += 1;
+        }
+        Self { offsets, sources }
+    }
+
+    fn sum(&self, values: &[f64], targets: &mut [f64]) {
+        targets
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(4096)
+            .for_each(|(i, out)| {
+                let range = self.offsets[i] as usize..self.offsets[i + 1] as usize;
+                *out = self.sources[range]
+                    .iter()
+                    .map(|&s| values[s as usize])
+                    .sum();
+            });
+    }
+}
+
+impl Assembly {
+    /// Prepares the assembly of elements over `order` unknowns.
+    pub fn new<'a>(order: usize, elements: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
+        let mut builder = PatternBuilder::new(order);
+        for unknowns in elements.clone() {
+            builder.add_clique(unknowns);
+        }
+        let pattern = builder.build();
+        let (mut element_offsets, mut block_offsets) = (vec![0u32], vec![0u32]);
+        let (mut all, mut slots) = (Vec::new(), Vec::new());
+        for unknowns in elements {
+            for (i, &a) in unknowns.iter().enumerate() {
+                // The pattern holds every pair: it was built from the same cliques.
+                slots.extend(unknowns[..=i].iter().filter_map(|&b| pattern.slot(a, b)));
+            }
+            all.extend_from_slice(unknowns);
+            element_offsets.push(all.len() as u32);
+            block_offsets.push(slots.len() as u32);
+        }
+        Self {
+            matrix: Gather::new(pattern.len(), &slots),
+            vector: Gather::new(order, &all),
+            pattern,
+            element_offsets,
+            unknowns: all,
+            block_offsets,
+        }
+    }
+
+    /// The pattern of the sum.
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// Number of elements.
+    pub fn n_elements(&self) -> usize {
+        self.element_offsets.len() - 1
+    }
+
+    /// Unknowns of an element, in its own order.
+    pub fn unknowns(&self, element: usize) -> &[u32] {
+        &self.unknowns[self.local(element)]
+    }
+
+    /// Where an element's vector lies among the local vectors.
+    pub fn local(&self, element: usize) -> std::ops::Range<usize> {
+        self.element_offsets[element] as usize..self.element_offsets[element + 1] as usize
+    }
+
+    /// Where an element's block lies among the blocks.
+    pub fn block(&self, element: usize) -> std::ops::Range<usize> {
+        self.block_offsets[element] as usize..self.block_offsets[element + 1] as usize
+    }
+
+    /// Total length of the local vectors.
+    pub fn locals_len(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    /// Total length of the blocks.
+    pub fn blocks_len(&self) -> usize {
+        self.matrix.sources.len()
+    }
+
+    /// Sums the blocks into the lower triangle of the matrix.
+    pub fn sum_matrix(&self, blocks: &[f64], values: &mut [f64]) {
+        self.matrix.sum(blocks, values);
+    }
+
+    /// Sums the local vectors into one vector.
+    pub fn sum_vector(&self, locals: &[f64], vector: &mut [f64]) {
+        self.vector.sum(locals, vector);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_springs_by_hand() {
+        // k (x_a - x_b)^2 / 2 on pairs (1, 0) and (1, 2)
+        let elements: [&[u32]; 2] = [&[1, 0], &[1, 2]];
+        let assembly = Assembly::new(3, elements.into_iter());
+        assert_eq!(assembly.unknowns(1), [1, 2]);
+        let blocks = [5.0, -5.0, 5.0, 7.0, -7.0, 7.0];
+        assert_eq!(assembly.blocks_len(), 6);
+        let mut values = vec![0.0; assembly.pattern().len()];
+        assembly.sum_matrix(&blocks, &mut values);
+        let at = |i, j| values[assembly.pattern().slot(i, j).unwrap() as usize];
+        assert_eq!([at(0, 0), at(1, 1), at(2, 2)], [5.0, 12.0, 7.0]);
+        assert_eq!([at(1, 0), at(2, 1)], [-5.0, -7.0]);
+        let mut vector = vec![0.0; 3];
+        assembly.sum_vector(&[1.0, 2.0, 3.0, 4.0], &mut vector);
+        assert_eq!(vector, [2.0, 4.0, 4.0]);
+    }
+}

@@ -1,0 +1,17 @@
+//! Sparse linear algebra for Seamstress: orderings, patterns and Cholesky factorisations.
+//!
+//! A few ideas, one file each:
+//! * [`ordering`]: nested dissection of a graph (METIS), so that factors stay sparse;
+//! * [`pattern`]: a symmetric sparsity pattern that is built once and filled many times;
+//! * [`assembly`]: sums of small dense blocks into such a pattern;
+//! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once.
+
+pub mod assembly;
+pub mod cholesky;
+pub mod ordering;
+pub mod pattern;
+
+pub use assembly::Assembly;
+pub use cholesky::{Cholesky, NotPositiveDefinite, Scalar};
+pub use num_complex::Complex64;
+pub use pattern::{Pattern, PatternBuilder};

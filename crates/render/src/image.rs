@@ -1,0 +1,125 @@
+//! The finished picture, and the way from linear light to bytes.
+
+use std::io::Write;
+
+use crate::RenderError;
+
+/// A picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+impl Image {
+    /// Wraps rows of bytes; the caller guarantees `3 * width * height` of them.
+    pub(crate) fn from_rows(width: u32, height: u32, pixels: Vec<u8>) -> Self {
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All bytes: red, green, blue of each pixel, rows from top to bottom.
+    pub fn rgb8(&self) -> &[u8] {
+        &self.pixels
+    }
+
+    /// Red, green and blue of the pixel in column `x` and row `y`, counted from the top left;
+    /// `None` outside the picture.
+    pub fn get(&self, x: u32, y: u32) -> Option<[u8; 3]> {
+        if x >= self.width || y >= self.height {
+            return None;
+        }
+        let at = 3 * (y as usize * self.width as usize + x as usize);
+        Some([self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]])
+    }
+
+    /// Like [`get`](Self::get), and black outside the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> [u8; 3] {
+        self.get(x, y).unwrap_or_default()
+    }
+
+    /// Writes the picture as a PNG.
+    ///
+    /// # Errors
+    /// [`RenderError::Png`] if the writer fails.
+    pub fn write_png(&self, w: impl Write) -> Result<(), RenderError> {
+        let mut encoder = png::Encoder::new(w, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.pixels)?;
+        Ok(writer.finish()?)
+    }
+}
+
+/// Linear light to a byte of sRGB (IEC 61966-2-1).
+pub(crate) fn to_srgb8(linear: f32) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let s = if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    };
+    (255.0 * s + 0.5) as u8
+}
+
+/// A display colour, sRGB in `0..=1`, to linear light.
+pub(crate) fn to_linear(srgb: [f64; 3]) -> [f32; 3] {
+    srgb.map(|s| {
+        let s = s.clamp(0.0, 1.0);
+        let c = if s <= 0.040_45 {
+            s / 12.92
+        } else {
+            ((s + 0.055) / 1.055).powf(2.4)
+        };
+        c as f32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_the_way_to_linear_light_and_back() {
+        for byte in 0..=255_u8 {
+            let linear = to_linear([f64::from(byte) / 255.0; 3]);
+            assert_eq!(to_srgb8(linear[0]), byte);
+        }
+    }
+
+    #[test]
+    fn png_decodes_to_the_same_pixels() {
+        let (width, height) = (7, 5);
+        let pixels: Vec<u8> = (0..3 * width * height)
+            .map(|i| (i * 37 % 256) as u8)
+            .collect();
+        let image = Image::from_rows(width, height, pixels.clone());
+        let mut bytes = Vec::new();
+        image.write_png(&mut bytes).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let mut decoded = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut decoded).unwrap();
+        assert_eq!((info.width, info.height), (width, height));
+        assert_eq!(decoded[..info.buffer_size()], pixels[..]);
+        assert_eq!(image.pixel(6, 4), [pixels[102], pixels[103], pixels[104]]);
+        assert_eq!(image.get(7, 0), None);
+    }
+}

@@ -1,0 +1,178 @@
+//! Layouts whose seams are closed exactly: the cut through the cones and the space over it.
+
+use super::arap::{Poisson, frames};
+use super::energy::Energy;
+use super::homotopy::angle_sums;
+use super::newton::{NewtonOptions, NewtonSolution, minimize};
+use super::problem::{LayoutProblem, triangles};
+use super::space::{regauge, seamless_space, turned_vertices};
+use crate::cut::{Cut, SeamGraph, connect_cones};
+use crate::quarter::turn;
+use crate::rounding::MatchedCut;
+use num_complex::Complex64;
+use seamstress_numerics::NotPositiveDefinite;
+use seamstress_surface::{FaceData, HalfedgeData, Metric, TriMesh, VertexData};
+use std::f64::consts::FRAC_PI_2;
+
+/// A cut through the cones, its matchings, and the layouts that close up to them.
+pub struct ExactLayout {
+    /// The cut; its seams end at cones or the boundary.
+    pub cut: Cut,
+    /// Matching per half-edge in the gauge of this cut, zero off the seams.
+    pub matching: HalfedgeData<i32>,
+    /// Quarter turns applied to each face against the gauge of the all-seam cut.
+    pub gauge: FaceData<i32>,
+    /// Index of each interior vertex, in quarters, that the layout must have.
+    pub index: VertexData<i32>,
+    problem: LayoutProblem,
+}
+
+/// What is wrong with a layout, if anything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Defects {
+    /// Triangles whose orientation is not positive.
+    pub flips: usize,
+    /// Interior vertices whose angle sum is not `(4 - k) pi / 2`.
+    pub wrong_angles: usize,
+}
+
+impl Defects {
+    /// Neither flips nor wrong angles.
+    pub fn none(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl ExactLayout {
+    /// Cuts through the cones of the matchings and builds the exact space.
+    ///
+    /// # Errors
+    /// When the system cannot be set up.
+    pub fn new(
+        mesh: &TriMesh,
+        metric: &Metric,
+        matched: &MatchedCut,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let full = matched.matching_per_halfedge(mesh);
+        let is_cone = turned_vertices(mesh, &full);
+        let (cut, tree) = connect_cones(mesh, metric, &is_cone).ok_or(NotPositiveDefinite)?;
+        let (mut matching, gauge) = regauge(mesh, &tree, &full);
+        for h in mesh.halfedges() {
+            // Off the seams the matchings are multiples of four: the same rotation as none.
+            matching[h] = if cut.is_seam[h] { matching[h] } else { 0 };
+        }
+        let graph = SeamGraph::new(mesh, &cut, &is_cone);
+        let space = seamless_space(mesh, &cut, &graph, &matching);
+        let problem = LayoutProblem::new(space, triangles(mesh, metric, &cut), None)?;
+        let index = matched.cone_indices(mesh, metric);
+        Ok(Self {
+            cut,
+            matching,
+            gauge,
+            index,
+            problem,
+        })
+    }
+
+    /// The problem behind it.
+    pub fn problem(&self) -> &LayoutProblem {
+        &self.problem
+    }
+
+    /// Positions of the wedges for the unknowns.
+    pub fn expand(&self, y: &[f64]) -> Vec<Complex64> {
+        self.problem.space().expand(y)
+    }
+
+    /// The exact layout nearest to one of the all-seam cut, in the Jacobians (one Poisson solve).
+    ///
+    /// # Errors
+    /// When the system cannot be factored.
+    pub fn project(
+        &mut self,
+        mesh: &TriMesh,
+        all_seams: &Cut,
+        z: &[Complex64],
+    ) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let targets = self.jacobians(mesh, all_seams, z);
+        Ok(Poisson::new(&mut self.problem)?.solve(&targets))
+    }
+
+    /// As-rigid-as-possible layout that starts from the frames of one of the all-seam cut.
+    ///
+    /// # Errors
+    /// When the system cannot be factored.
+    pub fn arap(
+        &mut self,
+        mesh: &TriMesh,
+        all_seams: &Cut,
+        z: &[Complex64],
+        iterations: usize,
+    ) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let rotations = self
+            .jacobians(mesh, all_seams, z)
+            .iter()
+            .map(|[x, y]| crate::quarter::direction(x - y * Complex64::I))
+            .collect();
+        Ok(Poisson::new(&mut self.problem)?.arap(rotations, iterations))
+    }
+
+    /// Images of the axes under a layout of another cut, turned into this gauge.
+    fn jacobians(&self, mesh: &TriMesh, other: &Cut, z: &[Complex64]) -> Vec<[Complex64; 2]> {
+        let gradients = self.problem.triangles();
+        mesh.faces()
+            .map(|f| {
+                let mut axes = [Complex64::ZERO; 2];
+                for (k, h) in f.halfedges().into_iter().enumerate() {
+                    let corner = turn(z[other.wedge[h] as usize], self.gauge[f]);
+                    let g = gradients[f.at()].gradients[k];
+                    axes[0] += corner * g[0];
+                    axes[1] += corner * g[1];
+                }
+                axes
+            })
+            .collect()
+    }
+
+    /// Rotations of the triangles of a layout.
+    pub fn frames(&self, y: &[f64]) -> Vec<Complex64> {
+        frames(self.problem.triangles(), &self.expand(y))
+    }
+
+    /// Minimises an energy; the start must be free of flips.
+    pub fn minimize(
+        &mut self,
+        y: Vec<f64>,
+        energy: &impl Energy,
+        options: &NewtonOptions,
+    ) -> NewtonSolution {
+        minimize(&mut self.problem, y, energy, options)
+    }
+
+    /// Replaces the metric, keeping cut and space.
+    pub fn set_metric(&mut self, mesh: &TriMesh, metric: &Metric) {
+        self.problem.set_metric(mesh, metric, &self.cut);
+    }
+
+    /// Counts flips and wrong angles.
+    pub fn defects(&self, mesh: &TriMesh, y: &[f64]) -> Defects {
+        let z = self.expand(y);
+        let flipped = |t: &&super::problem::Triangle| !is_positive(t.wedges.map(|w| z[w as usize]));
+        let sums = angle_sums(mesh, self.problem.triangles(), &z);
+        let wrong = mesh.vertices().filter(|&v| {
+            let expected = f64::from(4 - self.index[v]) * FRAC_PI_2;
+            // A wrong angle is off by a quarter turn at least.
+            !mesh.is_boundary(v) && !((sums[v] - expected).abs() < 0.1)
+        });
+        Defects {
+            flips: self.problem.triangles().iter().filter(flipped).count(),
+            wrong_angles: wrong.count(),
+        }
+    }
+}
+
+/// Exact orientation test of a triangle in the plane.
+pub fn is_positive(corners: [Complex64; 3]) -> bool {
+    let [a, b, c] = corners.map(|z| robust::Coord { x: z.re, y: z.im });
+    robust::orient2d(a, b, c) > 0.0
+}

@@ -1,0 +1,109 @@
+//! The isometric layout: triangles unfolded one by one along a dual tree.
+
+use crate::cut::{Cut, DualTree};
+use crate::quarter::rotation;
+use num_complex::Complex64;
+use seamstress_surface::{Face, FaceData, Halfedge, Metric, TriMesh};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Direction of each face's first half-edge in the unfolded plane, radians, summed up along the tree
+/// without taking any remainder.
+///
+/// It is a linear function of the corner angles, which makes seam rotations comparable between metrics
+/// and liftable: two layouts that differ by full turns get different numbers.
+fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
+    let mut heading = FaceData::filled(mesh.n_faces(), 0.0);
+    for &f in &tree.order {
+        let Some(h) = tree.parent[f] else { continue };
+        let Some(t) = mesh.twin(h) else { continue };
+        heading[f] = heading[h.face()] + turning(metric, h) - turning(metric, t) - PI;
+    }
+    heading
+}
+
+/// Direction of a half-edge against the first one of its face, radians.
+fn turning(metric: &Metric, h: Halfedge) -> f64 {
+    let [_, second, third] = h.face().halfedges();
+    match h.side() {
+        0 => 0.0,
+        1 => PI - metric.angle[second],
+        _ => 2.0 * PI - metric.angle[second] - metric.angle[third],
+    }
+}
+
+/// Positions of the wedges after unfolding the faces along the tree; every triangle keeps its shape.
+pub fn unfold(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Vec<Complex64> {
+    let heading = headings(mesh, metric, tree);
+    let mut z = vec![Complex64::ZERO; cut.n_wedges];
+    for &f in &tree.order {
+        let turn = rotation(heading[f] / FRAC_PI_2);
+        let flat = metric.flat[f];
+        let place = |z: &mut Vec<Complex64>, f: Face, from: usize, to: usize| {
+            let (from_wedge, to_wedge) = (
+                cut.wedge[f.halfedge(from)] as usize,
+                cut.wedge[f.halfedge(to)] as usize,
+            );
+            z[to_wedge] = z[from_wedge] + turn * (flat[to] - flat[from]);
+        };
+        match tree.parent[f].and_then(|h| mesh.twin(h)) {
+            // The two corners on the shared edge stand; hang the third on the nearer one.
+            Some(t) => {
+                let (near, far, apex) = (t.side(), (t.side() + 1) % 3, (t.side() + 2) % 3);
+                let nearer = if metric.length[t.prev()] <= metric.length[t.next()] {
+                    near
+                } else {
+                    far
+                };
+                place(&mut z, f, nearer, apex);
+            }
+            None => {
+                place(&mut z, f, 0, 1);
+                place(&mut z, f, 0, 2);
+            }
+        }
+    }
+    z
+}
+
+/// Lifted rotation of each seam in the isometric layout, in quarter turns: the angle from the left
+/// to the right image of the edge.
+pub fn seam_rotations(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Vec<f64> {
+    let heading = headings(mesh, metric, tree);
+    cut.seams
+        .iter()
+        .map(|&h| {
+            let Some(t) = mesh.twin(h) else { return 0.0 };
+            let left = heading[h.face()] + turning(metric, h);
+            let right = heading[t.face()] + turning(metric, t) + PI;
+            (right - left) / FRAC_PI_2
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quarter::direction;
+    use seamstress_testkit as testkit;
+
+    #[test]
+    fn unfolding_keeps_lengths_and_rotations_agree_with_positions() {
+        let soup = testkit::bumpy(testkit::icosphere(2), 0.05, 3);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let tree = DualTree::lightest(&mesh, |h| metric.length[h]);
+        let cut = Cut::new(&mesh, |h| tree.crossed[h]);
+        let z = unfold(&mesh, &metric, &tree, &cut);
+        for h in mesh.halfedges() {
+            let [a, b] = cut.ends(h);
+            let length = (z[b as usize] - z[a as usize]).norm();
+            assert!((length - metric.length[h]).abs() < 1e-10);
+        }
+        let rotations = seam_rotations(&mesh, &metric, &tree, &cut);
+        for (&h, r) in cut.seams.iter().zip(rotations) {
+            let [a, b, c, d] = cut.seam_wedges(&mesh, h).map(|w| z[w as usize]);
+            let turned = direction(b - a) * rotation(r);
+            assert!((turned - direction(d - c)).norm() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Laying a cut mesh out in the plane.
+
+pub mod arap;
+pub mod energy;
+pub mod exact;
+pub mod homotopy;
+pub mod isometric;
+pub mod newton;
+pub mod problem;
+pub mod safeguards;
+pub mod space;

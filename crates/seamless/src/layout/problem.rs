@@ -1,0 +1,503 @@
+//! A layout problem: triangles, the space their corners live in, and one factorisation for both.
+
+use super::energy::{Energy, Jacobian, ProjectedHessian};
+use super::space::LinearSpace;
+use crate::cut::Cut;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use seamstress_numerics::ordering::{Graph, expand, nested_dissection};
+use seamstress_numerics::{Assembly, Cholesky, NotPositiveDefinite};
+use seamstress_surface::{Metric, TriMesh};
+
+/// Faces per parallel task; sums are taken per task, then in order, so that the number of threads does
+/// not show in the result.
+const CHUNK: usize = 2048;
+
+/// A triangle as layouts see it.
+#[derive(Debug, Clone, Copy)]
+pub struct Triangle {
+    /// Wedges of its corners.
+    pub wedges: [u32; 3],
+    /// Gradients of the corner hat functions; `J = sum of uv_k times gradient_k`.
+    pub gradients: [[f64; 2]; 3],
+    /// Share of the total area.
+    pub weight: f64,
+}
+
+impl Triangle {
+    fn corners(&self, z: &[Complex64]) -> [Complex64; 3] {
+        self.wedges.map(|w| z[w as usize])
+    }
+
+    /// The Jacobian of the layout on this triangle.
+    #[inline]
+    pub fn jacobian(&self, z: &[Complex64]) -> Jacobian {
+        let mut j = [[0.0; 2]; 2];
+        for (z, g) in self.corners(z).into_iter().zip(self.gradients) {
+            j[0][0] += z.re * g[0];
+            j[0][1] += z.re * g[1];
+            j[1][0] += z.im * g[0];
+            j[1][1] += z.im * g[1];
+        }
+        Jacobian::from_rows(j)
+    }
+
+    /// Twice the signed area in the layout.
+    #[inline]
+    pub fn doubled_area(&self, z: &[Complex64]) -> f64 {
+        let [a, b, c] = self.corners(z);
+        ((b - a).conj() * (c - a)).im
+    }
+}
+
+/// The triangles of a cut mesh with a metric.
+pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
+    let total = metric.total_area();
+    mesh.faces()
+        .map(|f| {
+            let [_, p, q] = metric.flat[f];
+            let determinant = p.re * q.im - p.im * q.re;
+            let g1 = [q.im / determinant, -q.re / determinant];
+            let g2 = [-p.im / determinant, p.re / determinant];
+            Triangle {
+                wedges: f.halfedges().map(|h| cut.wedge[h]),
+                gradients: [[-g1[0] - g2[0], -g1[1] - g2[1]], g1, g2],
+                weight: metric.area[f] / total,
+            }
+        })
+        .collect()
+}
+
+/// Deterministic parallel sum over triangles.
+pub fn sum_over(triangles: &[Triangle], value: impl Fn(&Triangle) -> f64 + Sync) -> f64 {
+    let parts: Vec<f64> = triangles
+        .par_chunks(CHUNK)
+        .map(|chunk| chunk.iter().map(&value).sum())
+        .collect();
+    parts.iter().sum()
+}
+
+/// The largest step along `dz` before some triangle's area vanishes; infinite if none does.
+pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -> f64 {
+    let step = |t: &Triangle| {
+        let ([a, b, c], [da, db, dc]) = (t.corners(z), t.corners(dz));
+        let cross = |p: Complex64, q: Complex64| (p.conj() * q).im;
+        let (e, f, de, df) = (b - a, c - a, db - da, dc - da);
+        smallest_positive_root(cross(de, df), cross(e, df) + cross(de, f), cross(e, f))
+    };
+    triangles
+        .par_chunks(CHUNK)
+        .map(|chunk| chunk.iter().map(step).fold(f64::INFINITY, f64::min))
+        .reduce(|| f64::INFINITY, f64::min)
+}
+
+/// Smallest positive root of `a t^2 + b t + c`.
+fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let positive = |t: f64| if t > 0.0 { t } else { f64::INFINITY };
+    positive(q / a).min(positive(c / q))
+}
+
+/// How the six corner coordinates of a triangle depend on its unknowns.
+enum ElementMap {
+    /// Each coordinate is an unknown of its own, in order.
+    Direct,
+    /// Row-major 6 x m matrix.
+    Matrix(Vec<f64>),
+}
+
+/// Soft closing of seams: `weight / 2 * sum |e_right - rotation e_left|^2`.
+pub struct SeamPenalty {
+    seams: Vec<SeamElement>,
+    /// Rotation of each seam.
+    pub rotations: Vec<Complex64>,
+    /// Weight of all of them.
+    pub weight: f64,
+}
+
+struct SeamElement {
+    /// Distinct wedges of the seam.
+    wedges: Vec<u32>,
+    /// Coefficient of each is `constant + linear * rotation`.
+    constant: Vec<f64>,
+    linear: Vec<f64>,
+}
+
+impl SeamElement {
+    fn new([a, b, c, d]: [u32; 4]) -> Self {
+        let mut element = Self {
+            wedges: Vec::new(),
+            constant: Vec::new(),
+            linear: Vec::new(),
+        };
+        // (d - c) - rotation (b - a)
+        for (wedge, constant, linear) in
+            [(a, 0.0, 1.0), (b, 0.0, -1.0), (c, -1.0, 0.0), (d, 1.0, 0.0)]
+        {
+            let k = element
+                .wedges
+                .iter()
+                .position(|&w| w == wedge)
+                .unwrap_or_else(|| {
+                    element.wedges.push(wedge);
+                    element.constant.push(0.0);
+                    element.linear.push(0.0);
+                    element.wedges.len() - 1
+                });
+            element.constant[k] += constant;
+            element.linear[k] += linear;
+        }
+        element
+    }
+
+    fn coefficient(&self, k: usize, rotation: Complex64) -> Complex64 {
+        self.constant[k] + self.linear[k] * rotation
+    }
+
+    fn gap(&self, rotation: Complex64, z: &[Complex64]) -> Complex64 {
+        let term = |k: usize| self.coefficient(k, rotation) * z[self.wedges[k] as usize];
+        (0..self.wedges.len()).map(term).sum()
+    }
+}
+
+impl SeamPenalty {
+    /// Penalty on all seams of a cut.
+    pub fn new(mesh: &TriMesh, cut: &Cut, rotations: Vec<Complex64>, weight: f64) -> Self {
+        let element = |&h| SeamElement::new(cut.seam_wedges(mesh, h));
+        Self {
+            seams: cut.seams.iter().map(element).collect(),
+            rotations,
+            weight,
+        }
+    }
+
+    /// Value at a layout.
+    pub fn value(&self, z: &[Complex64]) -> f64 {
+        let squares = self
+            .seams
+            .iter()
+            .zip(&self.rotations)
+            .map(|(s, &r)| s.gap(r, z).norm_sqr());
+        0.5 * self.weight * squares.sum::<f64>()
+    }
+
+    /// The largest mismatch of a seam.
+    pub fn largest_gap(&self, z: &[Complex64]) -> f64 {
+        let gaps = self
+            .seams
+            .iter()
+            .zip(&self.rotations)
+            .map(|(s, &r)| s.gap(r, z).norm());
+        gaps.fold(0.0, f64::max)
+    }
+}
+
+/// Triangles over a linear space, with everything that is prepared once: element maps, assembly,
+/// ordering and symbolic factorisation, workspaces.
+pub struct LayoutProblem {
+    space: LinearSpace,
+    triangles: Vec<Triangle>,
+    maps: Vec<ElementMap>,
+    assembly: Assembly,
+    cholesky: Cholesky<f64>,
+    blocks: Vec<f64>,
+    locals: Vec<f64>,
+    matrix: Vec<f64>,
+    /// Soft seams, only with a free space.
+    pub penalty: Option<SeamPenalty>,
+}
+
+impl LayoutProblem {
+    /// Prepares the problem. A penalty needs [`LinearSpace::free`], where unknown pair = wedge.
+    ///
+    /// # Errors
+    /// When the factorisation cannot be set up (memory).
+    pub fn new(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        penalty: Option<SeamPenalty>,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let (maps, mut elements): (Vec<_>, Vec<_>) =
+            triangles.iter().map(|t| element_map(&space, t)).unzip();
+        for seam in penalty.iter().flat_map(|p| &p.seams) {
+            elements.push(
+                seam.wedges
+                    .iter()
+                    .flat_map(|&w| [2 * w, 2 * w + 1])
+                    .collect(),
+            );
+        }
+        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
+        let order = order_pairs(space.n_unknowns() / 2, &elements);
+        let cholesky = Cholesky::analyze(assembly.pattern(), &order)?;
+        Ok(Self {
+            blocks: vec![0.0; assembly.blocks_len()],
+            locals: vec![0.0; assembly.locals_len()],
+            matrix: vec![0.0; assembly.pattern().len()],
+            space,
+            triangles,
+            maps,
+            assembly,
+            cholesky,
+            penalty,
+        })
+    }
+
+    /// The space of the unknowns.
+    pub fn space(&self) -> &LinearSpace {
+        &self.space
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Replaces the triangles' shapes and weights (another metric on the same cut).
+    pub fn set_metric(&mut self, mesh: &TriMesh, metric: &Metric, cut: &Cut) {
+        self.triangles = triangles(mesh, metric, cut);
+    }
+
+    /// Entries of the Cholesky factor.
+    pub fn factor_len(&self) -> usize {
+        self.cholesky.factor_len()
+    }
+
+    /// Total energy, penalty included; infinite when a triangle is flipped or collapsed.
+    pub fn value(&self, energy: &impl Energy, z: &[Complex64]) -> f64 {
+        let sum = sum_over(&self.triangles, |t| {
+            let (s1, s2) = t.jacobian(z).singular_values();
+            if s2 > 0.0 && t.doubled_area(z) > 0.0 {
+                t.weight * energy.value(s1, s2)
+            } else {
+                f64::INFINITY
+            }
+        });
+        sum + self.penalty.as_ref().map_or(0.0, |p| p.value(z))
+    }
+
+    /// Assembles gradient and projected Hessian; returns the gradient in the unknowns.
+    pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
+        self.fill_triangles(|t, local, block| {
+            let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
+            for (k, g) in t.gradients.iter().enumerate() {
+                let d = hessian.gradient;
+                local[2 * k] = t.weight * (d[0] * g[0] + d[1] * g[1]);
+                local[2 * k + 1] = t.weight * (d[2] * g[0] + d[3] * g[1]);
+            }
+            block.fill(0.0);
+            for (value, v) in hessian.eigenvalues.iter().zip(hessian.eigenvectors) {
+                let scale = value * t.weight;
+                if scale <= 0.0 {
+                    continue;
+                }
+                let mut q = [0.0; 6];
+                for (k, g) in t.gradients.iter().enumerate() {
+                    q[2 * k] = v[0] * g[0] + v[1] * g[1];
+                    q[2 * k + 1] = v[2] * g[0] + v[3] * g[1];
+                }
+                let mut at = 0;
+                for i in 0..6 {
+                    for j in 0..=i {
+                        block[at] += scale * q[i] * q[j];
+                        at += 1;
+                    }
+                }
+            }
+        });
+        self.fill_seams(z);
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+        let mut gradient = vec![0.0; self.space.n_unknowns()];
+        self.assembly.sum_vector(&self.locals, &mut gradient);
+        gradient
+    }
+
+    /// Assembles the Dirichlet form `sum of area |J|^2 / 2` of each coordinate.
+    pub fn assemble_dirichlet(&mut self) {
+        self.fill_triangles(|t, _, block| {
+            let mut at = 0;
+            for i in 0..6 {
+                for j in 0..=i {
+                    let (g, h) = (t.gradients[i / 2], t.gradients[j / 2]);
+                    let same = (i % 2 == j % 2) as u8 as f64;
+                    block[at] = same * t.weight * (g[0] * h[0] + g[1] * h[1]);
+                    at += 1;
+                }
+            }
+        });
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+    }
+
+    /// Factors the assembled matrix, shifted by a fraction of its mean diagonal that grows until it is
+    /// positive definite.
+    ///
+    /// # Errors
+    /// When no reasonable shift helps (values that are not finite).
+    pub fn factorize(&mut self, shift: f64) -> Result<(), NotPositiveDefinite> {
+        let diagonal = self.assembly.pattern().diagonal();
+        let mean = diagonal
+            .iter()
+            .map(|&k| self.matrix[k as usize])
+            .sum::<f64>()
+            / diagonal.len().max(1) as f64;
+        let mut shift = shift * mean;
+        for _ in 0..8 {
+            for &k in diagonal {
+                self.matrix[k as usize] += shift;
+            }
+            if self
+                .cholesky
+                .factorize(self.assembly.pattern(), &self.matrix)
+                .is_ok()
+            {
+                return Ok(());
+            }
+            shift = (shift * 100.0).max(1e-12 * mean);
+        }
+        Err(NotPositiveDefinite)
+    }
+
+    /// Solves with the last factor in place.
+    pub fn solve(&mut self, rhs: &mut [f64]) {
+        self.cholesky.solve(rhs);
+    }
+
+    /// Runs `local` on every triangle in the six corner coordinates and carries the results over to
+    /// the element's unknowns.
+    fn fill_triangles(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
+        let assembly = &self.assembly;
+        let mut tasks = Vec::new();
+        let (mut blocks, mut locals) = (self.blocks.as_mut_slice(), self.locals.as_mut_slice());
+        let count = self.triangles.len();
+        for begin in (0..count).step_by(CHUNK) {
+            let end = (begin + CHUNK).min(count);
+            let block_len = assembly.block(end - 1).end - assembly.block(begin).start;
+            let local_len = assembly.local(end - 1).end - assembly.local(begin).start;
+            let (block, more_blocks) = blocks.split_at_mut(block_len);
+            let (vector, more_locals) = locals.split_at_mut(local_len);
+            (blocks, locals) = (more_blocks, more_locals);
+            tasks.push((begin..end, block, vector));
+        }
+        tasks.into_par_iter().for_each(|(range, blocks, locals)| {
+            let (mut b, mut l) = ([0.0; 21], [0.0; 6]);
+            let (mut block_at, mut local_at) = (0, 0);
+            for e in range {
+                local(&self.triangles[e], &mut l, &mut b);
+                let (block_len, local_len) = (assembly.block(e).len(), assembly.local(e).len());
+                let block = &mut blocks[block_at..block_at + block_len];
+                let vector = &mut locals[local_at..local_at + local_len];
+                match &self.maps[e] {
+                    ElementMap::Direct => {
+                        block.copy_from_slice(&b);
+                        vector.copy_from_slice(&l);
+                    }
+                    ElementMap::Matrix(map) => pull_back(map, &b, &l, block, vector),
+                }
+                block_at += block_len;
+                local_at += local_len;
+            }
+        });
+    }
+
+    fn fill_seams(&mut self, z: &[Complex64]) {
+        let Some(penalty) = &self.penalty else { return };
+        let first = self.triangles.len();
+        for (s, (seam, &rotation)) in penalty.seams.iter().zip(&penalty.rotations).enumerate() {
+            let gap = seam.gap(rotation, z);
+            let vector = &mut self.locals[self.assembly.local(first + s)];
+            let block = &mut self.blocks[self.assembly.block(first + s)];
+            let n = seam.wedges.len();
+            let c: Vec<Complex64> = (0..n).map(|k| seam.coefficient(k, rotation)).collect();
+            for i in 0..n {
+                let g = penalty.weight * c[i].conj() * gap;
+                vector[2 * i] = g.re;
+                vector[2 * i + 1] = g.im;
+                for j in 0..=i {
+                    // real 2 x 2 form of conj(c_i) c_j; on the diagonal it is a multiple of the identity
+                    let p = penalty.weight * c[i].conj() * c[j];
+                    let at = |row: usize, column: usize| row * (row + 1) / 2 + column;
+                    block[at(2 * i, 2 * j)] = p.re;
+                    block[at(2 * i + 1, 2 * j)] = p.im;
+                    block[at(2 * i + 1, 2 * j + 1)] = p.re;
+                    if j < i {
+                        block[at(2 * i, 2 * j + 1)] = -p.im;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// `B^T H B` and `B^T g` for a row-major 6 x m matrix B.
+fn pull_back(map: &[f64], h: &[f64; 21], g: &[f64; 6], block: &mut [f64], vector: &mut [f64]) {
+    let m = vector.len();
+    let entry = |i: usize, j: usize| {
+        let (i, j) = (i.max(j), i.min(j));
+        h[i * (i + 1) / 2 + j]
+    };
+    for (column, out) in vector.iter_mut().enumerate() {
+        *out = (0..6).map(|row| map[row * m + column] * g[row]).sum();
+    }
+    let mut at = 0;
+    for a in 0..m {
+        let mut product = [0.0; 6];
+        for i in 0..6 {
+            let x = map[i * m + a];
+            if x != 0.0 {
+                for (j, p) in product.iter_mut().enumerate() {
+                    *p += x * entry(i, j);
+                }
+            }
+        }
+        for b in 0..=a {
+            block[at] = (0..6).map(|j| product[j] * map[j * m + b]).sum();
+            at += 1;
+        }
+    }
+}
+
+fn element_map(space: &LinearSpace, triangle: &Triangle) -> (ElementMap, Vec<u32>) {
+    let rows = triangle
+        .wedges
+        .map(|w| [2 * w as usize, 2 * w as usize + 1]);
+    let rows = rows.as_flattened();
+    let mut unknowns: Vec<u32> = Vec::with_capacity(6);
+    let mut direct = true;
+    for &row in rows {
+        let (columns, coefficients) = space.row(row);
+        direct &= columns.len() == 1 && coefficients[0] == 1.0 && !unknowns.contains(&columns[0]);
+        for &column in columns {
+            if !unknowns.contains(&column) {
+                unknowns.push(column);
+            }
+        }
+    }
+    if direct {
+        return (ElementMap::Direct, unknowns);
+    }
+    unknowns.sort_unstable();
+    let m = unknowns.len();
+    let mut map = vec![0.0; 6 * m];
+    for (i, &row) in rows.iter().enumerate() {
+        let (columns, coefficients) = space.row(row);
+        for (column, &c) in columns.iter().zip(coefficients) {
+            if let Ok(k) = unknowns.binary_search(column) {
+                map[i * m + k] += c;
+            }
+        }
+    }
+    (ElementMap::Matrix(map), unknowns)
+}
+
+/// Elimination order of the unknowns: nested dissection of the graph of pairs.
+fn order_pairs(n_pairs: usize, elements: &[Vec<u32>]) -> Vec<u32> {
+    let edges = elements.iter().flat_map(|unknowns| {
+        let pairs = move |k: usize| unknowns[k] / 2;
+        (0..unknowns.len()).flat_map(move |i| (0..i).map(move |j| (pairs(i), pairs(j))))
+    });
+    expand(&nested_dissection(&Graph::from_edges(n_pairs, edges)), 2)
+}

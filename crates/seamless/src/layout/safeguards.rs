@@ -1,0 +1,277 @@
+//! From rounded matchings to a flip-free exact layout, by the cheapest route that works.
+
+use super::energy::SymmetricDirichlet;
+use super::exact::{Defects, ExactLayout};
+use super::homotopy::{self, Closed, Continuation, HomotopyError};
+use super::newton::NewtonOptions;
+use crate::cut::DualTree;
+use crate::progress::{Cancelled, Watch};
+use crate::rounding::MatchedCut;
+use num_complex::Complex64;
+use seamstress_numerics::NotPositiveDefinite;
+use seamstress_surface::{HalfedgeData, Metric, TriMesh};
+
+/// How a layout was reached; the later, the harder the input.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum Route {
+    /// As-rigid-as-possible iterations in the exact space.
+    Rigid,
+    /// The barrier homotopy from the isometric layout.
+    Barrier,
+    /// The lifted continuation from the isometric layout.
+    Continuation,
+    /// The lifted continuation over a dual tree that avoids what the matchings move.
+    Retreed,
+    /// The routes before in the snowflake metric with this exponent, then back to the metric asked for.
+    Snowflake {
+        /// Exponent of the lengths.
+        exponent: f64,
+    },
+}
+
+impl std::fmt::Display for Route {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Route::Rigid => f.write_str("rigid layout"),
+            Route::Barrier => f.write_str("barrier homotopy"),
+            Route::Continuation => f.write_str("lifted continuation"),
+            Route::Retreed => f.write_str("lifted continuation over a new tree"),
+            Route::Snowflake { exponent } => write!(f, "snowflake metric with exponent {exponent}"),
+        }
+    }
+}
+
+/// A flip-free exact layout with the right angles.
+pub struct Laid {
+    /// The cut and its exact space.
+    pub layout: ExactLayout,
+    /// The unknowns.
+    pub y: Vec<f64>,
+    /// How it was reached.
+    pub route: Route,
+    /// Newton steps of the homotopies tried.
+    pub homotopy_steps: usize,
+}
+
+/// Why there is no layout.
+#[derive(Debug, thiserror::Error)]
+pub enum LayoutError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Every route left defects; those of the last one.
+    #[error("no route gave a layout without flips: {} flipped triangles and {} wrong cone angles are left", .0.flips, .0.wrong_angles)]
+    Defective(Defects),
+    /// A linear system could not be solved.
+    #[error(transparent)]
+    Numeric(#[from] NotPositiveDefinite),
+}
+
+impl From<HomotopyError> for LayoutError {
+    fn from(error: HomotopyError) -> Self {
+        match error {
+            HomotopyError::Cancelled(cancelled) => cancelled.into(),
+            HomotopyError::Numeric(numeric) => numeric.into(),
+        }
+    }
+}
+
+const RIGID_ITERATIONS: usize = 20;
+const SNOWFLAKES: [f64; 2] = [0.5, 0.3];
+/// Exponents on the way back from a snowflake metric.
+const WAY_BACK: [f64; 7] = [0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
+const SETTLE: NewtonOptions = NewtonOptions {
+    max_iterations: 15,
+    tolerance: 1e-4,
+};
+
+/// Lays out matched seams exactly: rigid layout, barrier homotopy, lifted continuation, the same over a
+/// better dual tree, the same in snowflake metrics, in this order, until one has no flip and no wrong
+/// cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
+///
+/// `metric` is the one to solve in, `exponent` the snowflake exponent it has already (1 for a plain
+/// metric); `start` a layout of the all-seam cut to take first frames from.
+pub fn lay_out(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &MatchedCut,
+    start: Option<&[Complex64]>,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Laid, LayoutError> {
+    let mut layout = ExactLayout::new(mesh, metric, matched)?;
+    if let Some(z) = start {
+        let y = layout.arap(mesh, &matched.cut, z, RIGID_ITERATIONS)?;
+        if layout.defects(mesh, &y).none() {
+            return Ok(Laid {
+                layout,
+                y,
+                route: Route::Rigid,
+                homotopy_steps: 0,
+            });
+        }
+    }
+    let mut homotopy_steps = 0;
+    if let Some((y, route)) = homotopies(
+        mesh,
+        metric,
+        matched,
+        &mut layout,
+        &mut homotopy_steps,
+        watch,
+    )? {
+        return Ok(Laid {
+            layout,
+            y,
+            route,
+            homotopy_steps,
+        });
+    }
+    let mut last = Defects::default();
+    for exponent in SNOWFLAKES {
+        let snowflake = metric.snowflake(mesh, exponent);
+        let over = matched.with_metric(mesh, &snowflake);
+        layout.set_metric(mesh, &snowflake);
+        let found = homotopies(
+            mesh,
+            &snowflake,
+            &over,
+            &mut layout,
+            &mut homotopy_steps,
+            watch,
+        )?;
+        if let Some((y, _)) = found {
+            let y = way_back(mesh, metric, &mut layout, y, exponent);
+            last = layout.defects(mesh, &y);
+            if last.none() {
+                let route = Route::Snowflake { exponent };
+                return Ok(Laid {
+                    layout,
+                    y,
+                    route,
+                    homotopy_steps,
+                });
+            }
+        }
+    }
+    Err(LayoutError::Defective(last))
+}
+
+/// Barrier, continuation, continuation over a new tree.
+fn homotopies(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &MatchedCut,
+    layout: &mut ExactLayout,
+    steps: &mut usize,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Option<(Vec<f64>, Route)>, LayoutError> {
+    let mut accept = |closed: Closed, from: &MatchedCut, layout: &mut ExactLayout| {
+        *steps += closed.steps;
+        let y = layout.project(mesh, &from.cut, &closed.z)?;
+        Ok::<_, LayoutError>(layout.defects(mesh, &y).none().then_some(y))
+    };
+    let closed = homotopy::barrier(mesh, metric, matched, watch)?;
+    if let Some(y) = accept(closed, matched, layout)? {
+        return Ok(Some((y, Route::Barrier)));
+    }
+    let settings = Continuation::default();
+    let closed = homotopy::continuation(mesh, metric, matched, &settings, watch)?;
+    if let Some(y) = accept(closed, matched, layout)? {
+        return Ok(Some((y, Route::Continuation)));
+    }
+    let retreed = retree(mesh, metric, matched);
+    let closed = homotopy::continuation(mesh, metric, &retreed, &settings, watch)?;
+    let mut other = ExactLayout::new(mesh, metric, &retreed)?;
+    if let Some(y) = accept(closed, &retreed, &mut other)? {
+        *layout = other;
+        return Ok(Some((y, Route::Retreed)));
+    }
+    Ok(None)
+}
+
+/// Raises the exponent of a snowflake layout to 1 by Newton steps that never flip.
+fn way_back(
+    mesh: &TriMesh,
+    metric: &Metric,
+    layout: &mut ExactLayout,
+    mut y: Vec<f64>,
+    from: f64,
+) -> Vec<f64> {
+    y = layout.minimize(y, &SymmetricDirichlet, &SETTLE).y;
+    for exponent in WAY_BACK.into_iter().filter(|&p| p > from) {
+        if exponent < 1.0 {
+            layout.set_metric(mesh, &metric.snowflake(mesh, exponent));
+        } else {
+            layout.set_metric(mesh, metric);
+        }
+        layout.rescale(&mut y);
+        y = layout.minimize(y, &SymmetricDirichlet, &SETTLE).y;
+    }
+    y
+}
+
+/// The same matchings over a dual tree that crosses few edges where they differ from the isometric
+/// rotations, lifted so that the differences stay what they are.
+pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedCut {
+    let curvature = metric.curvature(mesh);
+    let mut transport = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
+    let mut isometric = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
+    for ((&h, &r), &r0) in matched
+        .cut
+        .seams
+        .iter()
+        .zip(&matched.matching)
+        .zip(&matched.isometric)
+    {
+        let Some(t) = mesh.twin(h) else { continue };
+        let d = (f64::from(r) - r0).abs();
+        (transport[h], transport[t]) = (d, d);
+        (isometric[h], isometric[t]) = (r0, -r0);
+    }
+    let flat = |v| {
+        if mesh.is_boundary(v) {
+            0.0
+        } else {
+            f64::abs(curvature[v])
+        }
+    };
+    let tree = DualTree::lightest(mesh, |h| {
+        1e3 * (transport[h] - 0.5).max(0.0) + flat(mesh.origin(h)).min(flat(mesh.tip(h)))
+    });
+    let full = matched.matching_per_halfedge(mesh);
+    let (regauged, _) = super::space::regauge(mesh, &tree, &full);
+    let mut other = MatchedCut::new(mesh, metric, tree);
+    // Regauging moves both by whole and real turns along the tree; bring the difference over exactly.
+    let mut turn = seamstress_surface::FaceData::filled(mesh.n_faces(), 0.0);
+    for &f in &other.tree.order {
+        if let Some(h) = other.tree.parent[f] {
+            turn[f] = turn[h.face()] - isometric[h];
+        }
+    }
+    for (s, &h) in other.cut.seams.iter().enumerate() {
+        let Some(t) = mesh.twin(h) else { continue };
+        let lifted = isometric[h] + turn[t.face()] - turn[h.face()];
+        // `lifted` and the new isometric rotation agree modulo 4; keep the lift of the matchings.
+        let shift = (other.isometric[s] - lifted).round() as i32;
+        other.matching[s] = regauged[h] + shift;
+    }
+    other
+}
+
+impl ExactLayout {
+    /// Scales the unknowns to the best global scale of the symmetric Dirichlet energy.
+    pub fn rescale(&self, y: &mut [f64]) {
+        let z = self.expand(y);
+        let (mut squares, mut inverse_squares) = (0.0, 0.0);
+        for t in self.problem().triangles() {
+            let (s1, s2) = t.jacobian(&z).singular_values();
+            squares += t.weight * (s1 * s1 + s2 * s2);
+            inverse_squares += t.weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2));
+        }
+        let scale = (inverse_squares / squares).powf(0.25);
+        if scale.is_finite() && scale > 0.0 {
+            y.iter_mut().for_each(|x| *x *= scale);
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Direct seamless parametrization of triangle meshes.
+//!
+//! The way of the data, each stage a module that takes values and returns new ones:
+//!
+//! [`cut`] -> [`rounding`] (alternating with [`layout`]) -> exact [`layout`] -> [`map`]
+//!
+//! [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
+
+pub mod cut;
+pub mod layout;
+pub mod map;
+mod pipeline;
+pub mod progress;
+pub mod quality;
+pub mod quarter;
+pub mod rounding;
+
+pub use map::{SeamlessMap, Tolerance, Violation, Violations};
+pub use pipeline::{ComponentStats, MapError, MapOptions, MapSolution, StageStats, make_map};
+pub use progress::{Observer, Progress, Stage};

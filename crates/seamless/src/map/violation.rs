@@ -1,0 +1,113 @@
+//! What can be wrong with a map.
+
+use std::fmt;
+
+/// One reason why a map is not a seamless map, naming its element (ids from 0).
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Violation {
+    /// The map has another number of vertices than the source.
+    #[error("the map has {map} vertices, the source {source_count}")]
+    VertexCount {
+        /// In the source.
+        source_count: usize,
+        /// In the map.
+        map: usize,
+    },
+    /// The map has another number of faces than the source.
+    #[error("the map has {map} faces, the source {source_count}")]
+    FaceCount {
+        /// In the source.
+        source_count: usize,
+        /// In the map.
+        map: usize,
+    },
+    /// A vertex was moved.
+    #[error("vertex {vertex} was moved by {distance:e}")]
+    MovedVertex {
+        /// The vertex.
+        vertex: u32,
+        /// How far, mesh units.
+        distance: f64,
+    },
+    /// A face has other vertices, or the same in another order.
+    #[error("face {face} is not the source's face")]
+    ChangedFace {
+        /// The face.
+        face: u32,
+    },
+    /// The number of UVs does not fit the faces.
+    #[error("{found} corner UVs for {expected} corners")]
+    UvCount {
+        /// Three per face.
+        expected: usize,
+        /// Given.
+        found: usize,
+    },
+    /// A UV is not finite.
+    #[error("face {face} has a UV that is not finite")]
+    NonFiniteUv {
+        /// The face.
+        face: u32,
+    },
+    /// A triangle of negative orientation.
+    #[error("face {face} is flipped")]
+    FlippedTriangle {
+        /// The face.
+        face: u32,
+    },
+    /// A triangle without area.
+    #[error("face {face} is collapsed")]
+    CollapsedTriangle {
+        /// The face.
+        face: u32,
+    },
+    /// The two images of an edge do not differ by a quarter turn and a translation.
+    #[error(
+        "edge {}-{} between faces {} and {} does not close: off by {residual:e} mean edge lengths",
+        vertices[0], vertices[1], faces[0], faces[1]
+    )]
+    OpenSeam {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// Its faces.
+        faces: [u32; 2],
+        /// Mismatch in mean UV edge lengths.
+        residual: f64,
+    },
+    /// An interior angle sum that is not a positive multiple of a quarter turn.
+    #[error("vertex {vertex} has an angle of {quarters} quarter turns")]
+    ConeAngle {
+        /// The vertex.
+        vertex: u32,
+        /// Its angle sum, quarter turns.
+        quarters: f64,
+    },
+    /// The indices of a component do not add up to four times its Euler characteristic.
+    #[error("the indices of component {component} sum to {sum}, not to {expected}")]
+    PoincareHopf {
+        /// The component, in order of first faces.
+        component: usize,
+        /// Sum of the indices, quarters.
+        sum: f64,
+        /// 4 chi.
+        expected: i64,
+    },
+}
+
+/// All violations found.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Violations(pub Vec<Violation>);
+
+impl fmt::Display for Violations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.as_slice() {
+            [] => write!(f, "no violation"),
+            [one] => one.fmt(f),
+            [first, rest @ ..] => write!(f, "{first} (and {} more violations)", rest.len()),
+        }
+    }
+}
+
+impl std::error::Error for Violations {}

@@ -1,0 +1,97 @@
+//! Progress and cancellation of long work.
+
+use std::ops::ControlFlow;
+
+/// The stages of making a map, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Stage {
+    /// Cutting and unfolding.
+    Cut,
+    /// Rounding the matchings.
+    Rounding,
+    /// The exact seamless layout.
+    Layout,
+    /// Removing and moving cones.
+    CleanUp,
+    /// Lowering the worst distortion.
+    Polish,
+    /// Certifying.
+    Certificate,
+}
+
+impl Stage {
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Cut => "cut",
+            Stage::Rounding => "rounding",
+            Stage::Layout => "layout",
+            Stage::CleanUp => "clean-up",
+            Stage::Polish => "polish",
+            Stage::Certificate => "certificate",
+        }
+    }
+}
+
+/// Where the work stands.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress {
+    /// Component of the mesh, from 0.
+    pub component: usize,
+    /// Number of components.
+    pub n_components: usize,
+    /// Stage of that component.
+    pub stage: Stage,
+    /// Estimated share of the stage that is done, 0 to 1.
+    pub fraction: f64,
+}
+
+/// The caller asked to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("stopped on request")]
+pub struct Cancelled;
+
+/// A caller's view of running work: called at least once per iteration of every loop.
+pub type Observer<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Reports progress of one component to an observer.
+pub struct Watch<'a, 'b> {
+    observer: &'a mut Observer<'b>,
+    now: Progress,
+}
+
+impl<'a, 'b> Watch<'a, 'b> {
+    /// A watch over one component.
+    pub fn new(observer: &'a mut Observer<'b>, component: usize, n_components: usize) -> Self {
+        let now = Progress {
+            component,
+            n_components,
+            stage: Stage::Cut,
+            fraction: 0.0,
+        };
+        Self { observer, now }
+    }
+
+    /// Enters a stage.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the observer breaks.
+    pub fn enter(&mut self, stage: Stage) -> Result<(), Cancelled> {
+        self.now.stage = stage;
+        self.tick(0.0)
+    }
+
+    /// Reports the share of the stage that is done.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the observer breaks.
+    pub fn tick(&mut self, fraction: f64) -> Result<(), Cancelled> {
+        self.now.fraction = fraction.clamp(0.0, 1.0);
+        match (self.observer)(self.now) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Cancelled),
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Figures of merit of a map.
+
+mod distortion;
+
+pub use distortion::{Distortion, Percentiles, distortion};

@@ -1,0 +1,177 @@
+//! The rounding loop of the direct method.
+
+use super::matched::MatchedCut;
+use super::relaxation::Relaxation;
+use crate::layout::homotopy::HomotopyError;
+use crate::layout::isometric::unfold;
+use crate::progress::Watch;
+use num_complex::Complex64;
+use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
+
+/// Settings of the rounding loop.
+#[derive(Debug, Clone, Copy)]
+pub struct RoundingOptions {
+    /// How much a rounding that makes cones costs, against one that only turns: 0 gives the lowest
+    /// distortion and two to five times the cones, 0.5 half the cones for about 0.02 of energy.
+    pub cone_bias: f64,
+    /// Rounds over which the threshold on the cost grows to its last value.
+    pub rounds: usize,
+    /// Layout iterations per round.
+    pub layout_iterations: usize,
+}
+
+impl Default for RoundingOptions {
+    fn default() -> Self {
+        Self {
+            cone_bias: 0.5,
+            rounds: 60,
+            layout_iterations: 8,
+        }
+    }
+}
+
+/// What the rounding loop did.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RoundingStats {
+    /// Rounds run.
+    pub rounds: usize,
+    /// Layouts computed.
+    pub layouts: usize,
+}
+
+/// Cost threshold of the first and last round.
+const FIRST_THRESHOLD: f64 = 0.05;
+const LAST_THRESHOLD: f64 = 1.0;
+/// Roundings that turn a seam by more than this (quarters) keep apart within a round.
+const LARGE_TURN: f64 = 0.1;
+
+/// Rounds the matchings of all seams, cheapest first, laying the mesh out again after each round.
+///
+/// The cost of turning a seam of rotation r by d = i - r to the integer i, with k the real indices of
+/// its ends, is `|d| + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves curvature from one
+/// end to the other, and the second term is the change of total absolute curvature. Returns the layout
+/// of the all-seam cut that the last round left.
+pub fn round(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+    options: &RoundingOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<Complex64>, RoundingStats), HomotopyError> {
+    let z = unfold(mesh, metric, &matched.tree, &matched.cut);
+    let mut relaxation = Relaxation::new(mesh, metric, &matched.cut, z)?;
+    let mut rotation = matched.isometric.clone();
+    let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
+    let total = open.len().max(1) as f64;
+    let mut stats = RoundingStats::default();
+    while !open.is_empty() {
+        watch.tick(1.0 - open.len() as f64 / total)?;
+        let growth = stats.rounds as f64 / (options.rounds.max(2) - 1) as f64;
+        let threshold = if growth < 1.0 {
+            FIRST_THRESHOLD + (LAST_THRESHOLD - FIRST_THRESHOLD) * growth
+        } else {
+            f64::INFINITY
+        };
+        let index = interior_indices(mesh, metric, matched, &rotation);
+        let chosen = choose(
+            mesh,
+            matched,
+            &rotation,
+            &index,
+            &open,
+            threshold,
+            options.cone_bias,
+        );
+        stats.rounds += 1;
+        if chosen.is_empty() {
+            continue;
+        }
+        for &(seam, integer) in &chosen {
+            matched.matching[seam as usize] = integer;
+            rotation[seam as usize] = f64::from(integer);
+            relaxation.close(seam as usize, integer);
+        }
+        let mut is_chosen = vec![false; rotation.len()];
+        chosen
+            .iter()
+            .for_each(|&(seam, _)| is_chosen[seam as usize] = true);
+        open.retain(|&seam| !is_chosen[seam as usize]);
+        relaxation.relax(options.layout_iterations)?;
+        stats.layouts += 1;
+        for &seam in &open {
+            let r = &mut rotation[seam as usize];
+            *r = relaxation.rotation(seam as usize, *r);
+        }
+    }
+    Ok((relaxation.positions().to_vec(), stats))
+}
+
+/// Indices at the current rotations; zero on the boundary, where they are free.
+fn interior_indices(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &MatchedCut,
+    rotation: &[f64],
+) -> VertexData<f64> {
+    let mut index = matched.indices(mesh, metric, rotation);
+    for v in mesh.vertices().filter(|&v| mesh.is_boundary(v)) {
+        index[v] = 0.0;
+    }
+    index
+}
+
+/// The open seams to round now, with their integers: cost within the threshold, cheapest first, large
+/// turns at least a vertex apart.
+fn choose(
+    mesh: &TriMesh,
+    matched: &MatchedCut,
+    rotation: &[f64],
+    index: &VertexData<f64>,
+    open: &[u32],
+    threshold: f64,
+    bias: f64,
+) -> Vec<(u32, i32)> {
+    let change = |v: Vertex, d: f64| {
+        if mesh.is_boundary(v) {
+            0.0
+        } else {
+            (index[v] + d).abs() - index[v].abs()
+        }
+    };
+    let mut candidates: Vec<(f64, u32, i32)> = open
+        .iter()
+        .filter_map(|&seam| {
+            let h = matched.cut.seams[seam as usize];
+            let (o, d) = (mesh.origin(h), mesh.tip(h));
+            let r = rotation[seam as usize];
+            let cost = |integer: f64| {
+                let turn = integer - r;
+                turn.abs() + bias * (change(o, -turn) + change(d, turn))
+            };
+            let (low, high) = (cost(r.floor()), cost(r.ceil()));
+            let (cost, integer) = if high < low - 1e-12 {
+                (high, r.ceil())
+            } else {
+                (low, r.floor())
+            };
+            (cost <= threshold).then_some((cost, seam, integer as i32))
+        })
+        .collect();
+    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut used = VertexData::filled(mesh.n_vertices(), false);
+    candidates.retain(|&(_, seam, integer)| {
+        if (f64::from(integer) - rotation[seam as usize]).abs() <= LARGE_TURN {
+            return true;
+        }
+        let h = matched.cut.seams[seam as usize];
+        let (o, d) = (mesh.origin(h), mesh.tip(h));
+        let free = !used[o] && !used[d];
+        used[o] |= free;
+        used[d] |= free;
+        free
+    });
+    candidates
+        .into_iter()
+        .map(|(_, seam, integer)| (seam, integer))
+        .collect()
+}

@@ -1,0 +1,199 @@
+//! The layout between roundings: as rigid as possible, rounded seams held, the others free.
+
+use crate::cut::Cut;
+use crate::quarter::{direction, unit};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use seamstress_numerics::ordering::{Graph, nested_dissection};
+use seamstress_numerics::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_surface::{Halfedge, Metric, TriMesh};
+use std::f64::consts::FRAC_PI_2;
+
+/// Weight of the rows that hold a rounded seam closed; the rigidity energy has weights of order one.
+const SEAM_WEIGHT: f64 = 1e3;
+/// Shift of the diagonal that settles rigid motions of loose pieces.
+const SHIFT: f64 = 1e-8;
+
+/// State of the relaxation. The matrix is complex Hermitian, one unknown per wedge; its pattern has
+/// room for every seam from the start, so that one symbolic analysis serves all rounds.
+pub struct Relaxation {
+    z: Vec<Complex64>,
+    /// Per corner: `sum of z conj(g)` over a face has the face's rotation; `sum of rotation g` over a
+    /// wedge is its right-hand side.
+    corner_weights: Vec<Complex64>,
+    wedge_of_corner: Vec<u32>,
+    corners_of_wedge: Vec<u32>,
+    wedge_offsets: Vec<u32>,
+    frames: Vec<Complex64>,
+    seams: Vec<[u32; 4]>,
+    pattern: Pattern,
+    matrix: Vec<Complex64>,
+    cholesky: Cholesky<Complex64>,
+}
+
+impl Relaxation {
+    /// Starts from a layout of the cut.
+    ///
+    /// # Errors
+    /// When the system cannot be set up.
+    pub fn new(
+        mesh: &TriMesh,
+        metric: &Metric,
+        cut: &Cut,
+        z: Vec<Complex64>,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let n = cut.n_wedges;
+        let seams: Vec<[u32; 4]> = cut
+            .seams
+            .iter()
+            .map(|&h| cut.seam_wedges(mesh, h))
+            .collect();
+        let faces: Vec<[u32; 3]> = mesh
+            .faces()
+            .map(|f| f.halfedges().map(|h| cut.wedge[h]))
+            .collect();
+        let mut builder = PatternBuilder::new(n);
+        faces.iter().for_each(|w| builder.add_clique(w));
+        seams.iter().for_each(|w| builder.add_clique(w));
+        let pattern = builder.build();
+        let order = nested_dissection(&wedge_graph(n, &faces, &seams));
+        let cholesky = Cholesky::analyze(&pattern, &order)?;
+        let mut relaxation = Self {
+            z,
+            corner_weights: corner_weights(mesh, metric),
+            wedge_of_corner: cut.wedge.to_vec(),
+            corners_of_wedge: Vec::new(),
+            wedge_offsets: Vec::new(),
+            frames: vec![Complex64::ONE; faces.len()],
+            seams,
+            matrix: vec![Complex64::ZERO; pattern.len()],
+            pattern,
+            cholesky,
+        };
+        relaxation.index_corners(n);
+        let cotangent = metric.cotangent();
+        for h in mesh.halfedges() {
+            let [a, b] = cut.ends(h);
+            relaxation.add_row(
+                &[(a, -Complex64::ONE), (b, Complex64::ONE)],
+                cotangent[h] / 2.0,
+            );
+        }
+        for &k in relaxation.pattern.diagonal() {
+            relaxation.matrix[k as usize] += SHIFT;
+        }
+        Ok(relaxation)
+    }
+
+    fn index_corners(&mut self, n_wedges: usize) {
+        let mut offsets = vec![0u32; n_wedges + 1];
+        for &w in &self.wedge_of_corner {
+            offsets[w as usize + 1] += 1;
+        }
+        for i in 0..n_wedges {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut fill = offsets.clone();
+        let mut corners = vec![0u32; self.wedge_of_corner.len()];
+        for (corner, &w) in self.wedge_of_corner.iter().enumerate() {
+            corners[fill[w as usize] as usize] = corner as u32;
+            fill[w as usize] += 1;
+        }
+        self.corners_of_wedge = corners;
+        self.wedge_offsets = offsets;
+    }
+
+    /// Adds `weight |sum of c z|^2` to the quadratic form.
+    fn add_row(&mut self, row: &[(u32, Complex64)], weight: f64) {
+        for &(i, ci) in row {
+            for &(j, cj) in row {
+                // Entry (i, j) is conj(c_i) c_j; only the lower triangle is stored.
+                if i >= j {
+                    if let Some(slot) = self.pattern.slot(i, j) {
+                        self.matrix[slot as usize] += weight * ci.conj() * cj;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Holds a seam closed up to a quarter turn from now on.
+    pub fn close(&mut self, seam: usize, matching: i32) {
+        let [a, b, c, d] = self.seams[seam];
+        let r = unit(matching);
+        let one = Complex64::ONE;
+        self.add_row(&[(d, one), (c, -one), (b, -r), (a, r)], SEAM_WEIGHT);
+    }
+
+    /// Local and global steps (Liu et al. 2008) with one factorisation.
+    ///
+    /// # Errors
+    /// When the matrix is not positive definite to working precision.
+    pub fn relax(&mut self, iterations: usize) -> Result<(), NotPositiveDefinite> {
+        self.cholesky.factorize(&self.pattern, &self.matrix)?;
+        for _ in 0..iterations {
+            self.local_step();
+            self.right_hand_side();
+            self.cholesky.solve(&mut self.z);
+        }
+        Ok(())
+    }
+
+    fn local_step(&mut self) {
+        let (z, wedges, weights) = (&self.z, &self.wedge_of_corner, &self.corner_weights);
+        self.frames
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(4096)
+            .for_each(|(f, frame)| {
+                let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
+                *frame = direction(term(3 * f) + term(3 * f + 1) + term(3 * f + 2));
+            });
+    }
+
+    fn right_hand_side(&mut self) {
+        let (frames, weights) = (&self.frames, &self.corner_weights);
+        let (corners, offsets) = (&self.corners_of_wedge, &self.wedge_offsets);
+        self.z
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(4096)
+            .for_each(|(w, out)| {
+                let range = offsets[w] as usize..offsets[w + 1] as usize;
+                *out = corners[range]
+                    .iter()
+                    .map(|&c| frames[c as usize / 3] * weights[c as usize])
+                    .sum();
+            });
+    }
+
+    /// Rotation of a seam in the layout, lifted to the branch nearest to `last`; quarter turns.
+    pub fn rotation(&self, seam: usize, last: f64) -> f64 {
+        let [a, b, c, d] = self.seams[seam].map(|w| self.z[w as usize]);
+        let r = ((d - c) * (b - a).conj()).arg() / FRAC_PI_2;
+        last + (r - last + 2.0).rem_euclid(4.0) - 2.0
+    }
+
+    /// The layout.
+    pub fn positions(&self) -> &[Complex64] {
+        &self.z
+    }
+}
+
+/// Halved cotangent weights times edge vectors, gathered at the corners.
+fn corner_weights(mesh: &TriMesh, metric: &Metric) -> Vec<Complex64> {
+    let cotangent = metric.cotangent();
+    let edge = |h: Halfedge| {
+        let flat = metric.flat[h.face()];
+        (flat[h.next().side()] - flat[h.side()]) * (cotangent[h] / 2.0)
+    };
+    mesh.halfedges().map(|h| edge(h.prev()) - edge(h)).collect()
+}
+
+fn wedge_graph(n: usize, faces: &[[u32; 3]], seams: &[[u32; 4]]) -> Graph {
+    let face_edges = faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let seam_edges = seams
+        .iter()
+        .flat_map(|&[a, b, c, d]| [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)]);
+    Graph::from_edges(n, face_edges.chain(seam_edges))
+}

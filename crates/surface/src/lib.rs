@@ -1,0 +1,21 @@
+//! Triangle meshes for Seamstress: connectivity, checks, repairs and intrinsic geometry.
+//!
+//! * [`soup`]: triangles as they come from a file; every fault found and named, harmless ones
+//!   repaired on request.
+//! * [`TriMesh`]: half-edge connectivity of an oriented manifold, no geometry.
+//! * [`Metric`]: edge lengths and what follows from them: angles, areas, flat corners, curvature.
+//! * [`components`]: the connected pieces of a soup, each a mesh of its own.
+//!
+//! Nothing here reads files, solves systems or prints.
+
+pub mod components;
+pub mod ids;
+mod mesh;
+mod metric;
+pub mod soup;
+
+pub use components::Component;
+pub use ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
+pub use mesh::{MeshError, TriMesh};
+pub use metric::Metric;
+pub use num_complex::Complex64;

@@ -1,0 +1,356 @@
+//! Half-edge connectivity of an oriented triangle manifold.
+
+use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
+use std::collections::HashMap;
+
+const NONE: u32 = u32::MAX;
+
+/// Why faces do not make a mesh. [`crate::soup::check`] lists every fault; this is the first one met.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is no face.
+    #[error("the mesh has no face")]
+    NoFaces,
+    /// More than about a billion faces.
+    #[error("the mesh has more than {} faces", u32::MAX / 4)]
+    TooManyFaces,
+    /// A face names a vertex that does not exist, or one vertex twice.
+    #[error("face {face} does not have three different vertices among {n_vertices}")]
+    BadFace {
+        /// The face.
+        face: u32,
+        /// Number of vertices.
+        n_vertices: usize,
+    },
+    /// Two faces run along an edge in the same direction.
+    #[error("edge {from}-{to} is used twice in the same direction, the second time by face {face}")]
+    RepeatedHalfedge {
+        /// Origin of the half-edge.
+        from: u32,
+        /// Tip of the half-edge.
+        to: u32,
+        /// The second face.
+        face: u32,
+    },
+    /// The faces around a vertex do not form one fan.
+    #[error("vertex {0} has more than one fan of faces")]
+    NonManifoldVertex(u32),
+}
+
+/// Connectivity of an oriented triangle manifold, possibly with boundary; no geometry.
+///
+/// Vertices without a face are allowed; they have no outgoing half-edge.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriMesh {
+    origin: HalfedgeData<Vertex>,
+    twin: HalfedgeData<u32>,
+    outgoing: VertexData<u32>,
+    boundary: VertexData<bool>,
+}
+
+impl TriMesh {
+    /// Builds the connectivity from vertex triples.
+    ///
+    /// # Errors
+    /// The first fault met; see [`MeshError`].
+    pub fn from_faces(n_vertices: usize, faces: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if faces.is_empty() {
+            return Err(MeshError::NoFaces);
+        }
+        if faces.len() > (u32::MAX / 4) as usize {
+            return Err(MeshError::TooManyFaces);
+        }
+        let mut directed = HashMap::with_capacity(3 * faces.len());
+        for (f, &[a, b, c]) in faces.iter().enumerate() {
+            let face = f as u32;
+            if [a, b, c].iter().any(|&v| v as usize >= n_vertices) || a == b || b == c || c == a {
+                return Err(MeshError::BadFace { face, n_vertices });
+            }
+            for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                if directed.insert((from, to), 3 * face + k as u32).is_some() {
+                    return Err(MeshError::RepeatedHalfedge { from, to, face });
+                }
+            }
+        }
+        let origin: HalfedgeData<Vertex> = faces.iter().flatten().map(|&v| Vertex(v)).collect();
+        let mut mesh = TriMesh {
+            twin: HalfedgeData::filled(origin.len(), NONE),
+            outgoing: VertexData::filled(n_vertices, NONE),
+            boundary: VertexData::filled(n_vertices, false),
+            origin,
+        };
+        for h in mesh.halfedges() {
+            let (from, to) = (mesh.origin(h), mesh.tip(h));
+            if let Some(&t) = directed.get(&(to.0, from.0)) {
+                mesh.twin[h] = t;
+            } else {
+                mesh.boundary[from] = true;
+                mesh.boundary[to] = true;
+            }
+            if mesh.outgoing[from] == NONE || mesh.twin[h] == NONE {
+                mesh.outgoing[from] = h.0;
+            }
+        }
+        mesh.check_fans()?;
+        Ok(mesh)
+    }
+
+    fn check_fans(&self) -> Result<(), MeshError> {
+        let mut corners = VertexData::filled(self.n_vertices(), 0u32);
+        for h in self.halfedges() {
+            corners[self.origin(h)] += 1;
+        }
+        for v in self.vertices() {
+            if self.outgoing(v).count() as u32 != corners[v] {
+                return Err(MeshError::NonManifoldVertex(v.0));
+            }
+        }
+        Ok(())
+    }
+
+    /// #V.
+    pub fn n_vertices(&self) -> usize {
+        self.outgoing.len()
+    }
+
+    /// #F.
+    pub fn n_faces(&self) -> usize {
+        self.origin.len() / 3
+    }
+
+    /// Number of half-edges, three per face.
+    pub fn n_halfedges(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// #E.
+    pub fn n_edges(&self) -> usize {
+        self.edges().count()
+    }
+
+    /// All vertices.
+    pub fn vertices(&self) -> impl Iterator<Item = Vertex> + use<> {
+        (0..self.outgoing.len() as u32).map(Vertex)
+    }
+
+    /// All faces.
+    pub fn faces(&self) -> impl Iterator<Item = Face> + use<> {
+        (0..self.n_faces() as u32).map(Face)
+    }
+
+    /// All half-edges.
+    pub fn halfedges(&self) -> impl Iterator<Item = Halfedge> + use<> {
+        (0..self.origin.len() as u32).map(Halfedge)
+    }
+
+    /// One half-edge per edge: the smaller of the two, or the only one.
+    pub fn edges(&self) -> impl Iterator<Item = Halfedge> + '_ {
+        self.halfedges().filter(|h| h.0 < self.twin[*h])
+    }
+
+    /// One half-edge per interior edge.
+    pub fn interior_edges(&self) -> impl Iterator<Item = Halfedge> + '_ {
+        self.edges().filter(|h| self.twin[*h] != NONE)
+    }
+
+    /// The half-edge on the other side, or `None` on the boundary.
+    #[inline]
+    pub fn twin(&self, h: Halfedge) -> Option<Halfedge> {
+        let t = self.twin[h];
+        (t != NONE).then_some(Halfedge(t))
+    }
+
+    /// Where a half-edge starts; the vertex of a corner.
+    #[inline]
+    pub fn origin(&self, h: Halfedge) -> Vertex {
+        self.origin[h]
+    }
+
+    /// Where a half-edge ends.
+    #[inline]
+    pub fn tip(&self, h: Halfedge) -> Vertex {
+        self.origin[h.next()]
+    }
+
+    /// The three vertices of a face.
+    #[inline]
+    pub fn face_vertices(&self, f: Face) -> [Vertex; 3] {
+        f.halfedges().map(|h| self.origin[h])
+    }
+
+    /// Outgoing half-edges of a vertex counter-clockwise; at a boundary vertex from the first to the
+    /// last face of its fan.
+    pub fn outgoing(&self, v: Vertex) -> Outgoing<'_> {
+        let first = self.outgoing[v];
+        Outgoing {
+            mesh: self,
+            first,
+            next: first,
+        }
+    }
+
+    /// Number of faces at a vertex.
+    pub fn valence(&self, v: Vertex) -> usize {
+        self.outgoing(v).count()
+    }
+
+    /// Whether the vertex lies on the boundary.
+    #[inline]
+    pub fn is_boundary(&self, v: Vertex) -> bool {
+        self.boundary[v]
+    }
+
+    /// Whether there is a boundary.
+    pub fn has_boundary(&self) -> bool {
+        self.boundary.iter().any(|&b| b)
+    }
+
+    /// Euler characteristic #V - #E + #F, vertices without a face left out, boundaries unfilled.
+    pub fn euler_characteristic(&self) -> i64 {
+        let used = self.outgoing.iter().filter(|&&h| h != NONE).count();
+        used as i64 - self.n_edges() as i64 + self.n_faces() as i64
+    }
+
+    /// Number of boundary loops.
+    pub fn n_boundary_loops(&self) -> usize {
+        let mut seen = HalfedgeData::filled(self.n_halfedges(), false);
+        let mut loops = 0;
+        for start in self.halfedges().filter(|h| self.twin[*h] == NONE) {
+            if seen[start] {
+                continue;
+            }
+            loops += 1;
+            let mut h = start;
+            while !seen[h] {
+                seen[h] = true;
+                // The boundary leaves a vertex along its first outgoing half-edge.
+                h = Halfedge(self.outgoing[self.tip(h)]);
+            }
+        }
+        loops
+    }
+
+    /// Genus of a connected mesh.
+    pub fn genus(&self) -> i64 {
+        (2 - self.euler_characteristic() - self.n_boundary_loops() as i64) / 2
+    }
+
+    /// Faces joined across edges: a label per face, and how many labels there are.
+    pub fn connected_faces(&self) -> (FaceData<u32>, usize) {
+        let mut label = FaceData::filled(self.n_faces(), NONE);
+        let mut count = 0;
+        let mut stack = Vec::new();
+        for start in self.faces() {
+            if label[start] != NONE {
+                continue;
+            }
+            label[start] = count;
+            stack.push(start);
+            while let Some(f) = stack.pop() {
+                for t in f.halfedges().into_iter().filter_map(|h| self.twin(h)) {
+                    if label[t.face()] == NONE {
+                        label[t.face()] = count;
+                        stack.push(t.face());
+                    }
+                }
+            }
+            count += 1;
+        }
+        (label, count as usize)
+    }
+}
+
+/// Iterator of [`TriMesh::outgoing`].
+pub struct Outgoing<'a> {
+    mesh: &'a TriMesh,
+    first: u32,
+    next: u32,
+}
+
+impl Iterator for Outgoing<'_> {
+    type Item = Halfedge;
+
+    fn next(&mut self) -> Option<Halfedge> {
+        if self.next == NONE {
+            return None;
+        }
+        let h = Halfedge(self.next);
+        let t = self.mesh.twin[h.prev()];
+        self.next = if t == self.first { NONE } else { t };
+        Some(h)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+
+    #[test]
+    fn tetrahedron() {
+        let mesh = TriMesh::from_faces(4, &TETRAHEDRON).unwrap();
+        assert_eq!(mesh.euler_characteristic(), 2);
+        assert_eq!(mesh.genus(), 0);
+        assert_eq!(mesh.n_edges(), 6);
+        assert!(!mesh.has_boundary());
+        for v in mesh.vertices() {
+            let fan: Vec<_> = mesh.outgoing(v).collect();
+            assert_eq!(fan.len(), 3);
+            assert!(fan.iter().all(|&h| mesh.origin(h) == v));
+            for (i, &h) in fan.iter().enumerate() {
+                assert_eq!(mesh.twin(h.prev()), Some(fan[(i + 1) % 3]));
+            }
+        }
+    }
+
+    #[test]
+    fn fan_of_a_boundary_vertex_starts_at_the_boundary() {
+        let mesh = TriMesh::from_faces(5, &[[0, 2, 3], [0, 1, 2], [0, 3, 4]]).unwrap();
+        let tips: Vec<_> = mesh.outgoing(Vertex(0)).map(|h| mesh.tip(h).0).collect();
+        assert_eq!(tips, [1, 2, 3]);
+        assert_eq!(mesh.n_boundary_loops(), 1);
+        assert_eq!(mesh.euler_characteristic(), 1);
+    }
+
+    #[test]
+    fn faults_are_refused() {
+        let bad = |n, faces: &[[u32; 3]]| TriMesh::from_faces(n, faces).unwrap_err();
+        assert_eq!(bad(3, &[]), MeshError::NoFaces);
+        assert_eq!(
+            bad(3, &[[0, 1, 3]]),
+            MeshError::BadFace {
+                face: 0,
+                n_vertices: 3
+            }
+        );
+        assert_eq!(
+            bad(3, &[[0, 1, 1]]),
+            MeshError::BadFace {
+                face: 0,
+                n_vertices: 3
+            }
+        );
+        assert_eq!(
+            bad(4, &[[0, 1, 2], [0, 1, 3]]),
+            MeshError::RepeatedHalfedge {
+                from: 0,
+                to: 1,
+                face: 1
+            }
+        );
+        assert_eq!(
+            bad(5, &[[0, 1, 2], [0, 3, 4]]),
+            MeshError::NonManifoldVertex(0)
+        );
+    }
+
+    #[test]
+    fn connected_pieces() {
+        let mesh = TriMesh::from_faces(7, &[[0, 1, 2], [3, 4, 5], [2, 1, 6]]).unwrap();
+        let (label, count) = mesh.connected_faces();
+        assert_eq!(count, 2);
+        assert_eq!(label.0, [0, 1, 0]);
+    }
+}

@@ -1,0 +1,312 @@
+//! Repairs that neither move nor merge a vertex.
+
+use super::check::{crowded_faces, referenced, repeated};
+use super::connectivity::{Connectivity, Twin, twins};
+use super::fault::list;
+use super::{MAX_FACES, MAX_VERTICES, TriangleSoup};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// One thing [`repair`] did. Faces and vertices are those of the soup given, except for
+/// `copies`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Repair {
+    /// Dropped a face that used a vertex more than once.
+    DroppedRepeatedVertexFace {
+        /// The face.
+        face: u32,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Dropped a face with the vertices and orientation of an earlier one.
+    DroppedDuplicateFace {
+        /// The face dropped.
+        face: u32,
+        /// The face kept.
+        first: u32,
+    },
+    /// Dropped the reverse of an earlier face, where more than two faces shared an edge and two
+    /// are left.
+    DroppedOppositeFace {
+        /// The face dropped.
+        face: u32,
+        /// The face kept.
+        first: u32,
+    },
+    /// Turned over the smaller part of a component (of two equal parts the one without the lowest
+    /// face), to orient it consistently.
+    Reoriented {
+        /// The faces turned over.
+        faces: Vec<u32>,
+    },
+    /// Gave each fan of faces at a vertex a vertex of its own, in the same place.
+    SplitVertex {
+        /// The vertex; its first fan keeps it.
+        vertex: u32,
+        /// The vertices of the other fans in the repaired soup.
+        copies: Vec<u32>,
+    },
+    /// Dropped the vertices that belong to no face.
+    DroppedUnreferencedVertices {
+        /// The vertices.
+        vertices: Vec<u32>,
+    },
+}
+
+impl fmt::Display for Repair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DroppedRepeatedVertexFace { face, vertex } => {
+                write!(
+                    f,
+                    "dropped face {face}, which used vertex {vertex} more than once"
+                )
+            }
+            Self::DroppedDuplicateFace { face, first } => {
+                write!(f, "dropped face {face}, a copy of face {first}")
+            }
+            Self::DroppedOppositeFace { face, first } => {
+                write!(f, "dropped face {face}, the reverse of face {first}")
+            }
+            Self::Reoriented { faces } => {
+                write!(f, "turned over {}", counted(faces, "face", "faces"))
+            }
+            Self::SplitVertex { vertex, copies } => {
+                let n = copies.len() + 1;
+                write!(
+                    f,
+                    "split vertex {vertex} into {n}, one for each fan of faces"
+                )
+            }
+            Self::DroppedUnreferencedVertices { vertices } => {
+                let vertices = counted(vertices, "vertex", "vertices");
+                write!(f, "dropped {vertices} in no face")
+            }
+        }
+    }
+}
+
+fn counted(elements: &[u32], one: &str, many: &str) -> String {
+    let noun = if elements.len() == 1 { one } else { many };
+    format!("{noun} {}", list(elements))
+}
+
+/// A repaired soup, and how it came from the one given.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Repaired {
+    /// The soup after all repairs.
+    pub soup: TriangleSoup,
+    /// What was done, in order; empty if the soup is unchanged.
+    pub repairs: Vec<Repair>,
+    /// For each vertex of `soup` the vertex it was.
+    pub vertex_origin: Vec<u32>,
+    /// For each face of `soup` the face it was.
+    pub face_origin: Vec<u32>,
+}
+
+/// Repairs what can be repaired without moving or merging a vertex.
+///
+/// Drops faces that repeat a vertex, copies of faces, and the later of a face and its reverse
+/// where that brings all their edges down to two faces; orients each component consistently by
+/// turning over as few faces as possible; splits vertices where several fans of faces meet; and
+/// drops vertices in no face. Faces and vertices that stay keep their order, copies of vertices
+/// come last.
+///
+/// What is left is for [`check`](super::check()) to say: edges of more than two faces, components
+/// that no orientation fits, and coordinates that are not finite stay. A soup with an index out of
+/// range, or with more elements than can be numbered, is returned as it is.
+#[must_use]
+pub fn repair(soup: TriangleSoup) -> Repaired {
+    let n_vertices = soup.positions.len();
+    let too_large = soup.faces.len() > MAX_FACES || n_vertices > MAX_VERTICES;
+    if too_large
+        || soup
+            .faces
+            .iter()
+            .flatten()
+            .any(|&v| v as usize >= n_vertices)
+    {
+        let (vertex_origin, face_origin) = (
+            (0..n_vertices as u32).collect(),
+            (0..soup.faces.len() as u32).collect(),
+        );
+        return Repaired {
+            soup,
+            repairs: Vec::new(),
+            vertex_origin,
+            face_origin,
+        };
+    }
+    let face_origin = (0..soup.faces.len() as u32).collect();
+    let vertex_origin = (0..n_vertices as u32).collect();
+    let mut work = Repaired {
+        soup,
+        repairs: Vec::new(),
+        vertex_origin,
+        face_origin,
+    };
+    work.drop_faces();
+    work.orient();
+    work.drop_vertices();
+    work.split_vertices();
+    work
+}
+
+/// Those of the reversed twins that share an edge with more faces than two, and none of whose
+/// edges keeps more than two when all such twins are gone. (A pair of opposite faces that hangs on
+/// an edge of a surface is not among them: without one of the two the other still hangs there.)
+fn surplus(connectivity: &Connectivity, n_faces: usize, mut reverses: Vec<Twin>) -> Vec<Twin> {
+    let crowded = crowded_faces(connectivity, n_faces);
+    reverses.retain(|twin| crowded[twin.face as usize]);
+    let mut is_surplus = vec![false; n_faces];
+    for twin in &reverses {
+        is_surplus[twin.face as usize] = true;
+    }
+    let mut helps = vec![true; n_faces];
+    for sides in connectivity.edges() {
+        let staying = sides
+            .iter()
+            .filter(|side| !is_surplus[side.face() as usize]);
+        if staying.count() > 2 {
+            for side in sides {
+                helps[side.face() as usize] = false;
+            }
+        }
+    }
+    reverses.retain(|twin| helps[twin.face as usize]);
+    reverses
+}
+
+impl Repaired {
+    /// Drops faces that are degenerate or stand in the way of another. Runs before any other
+    /// repair: faces still are what they were.
+    fn drop_faces(&mut self) {
+        let faces = &self.soup.faces;
+        let mut live = vec![true; faces.len()];
+        for (&triple, face) in faces.iter().zip(0u32..) {
+            if let Some(vertex) = repeated(triple) {
+                live[face as usize] = false;
+                self.repairs
+                    .push(Repair::DroppedRepeatedVertexFace { face, vertex });
+            }
+        }
+        let (reverses, copies): (Vec<_>, Vec<_>) = twins(faces, &live)
+            .into_iter()
+            .partition(|twin| twin.reversed);
+        for twin in copies {
+            live[twin.face as usize] = false;
+            let (face, first) = (twin.face, twin.first);
+            self.repairs
+                .push(Repair::DroppedDuplicateFace { face, first });
+        }
+        let connectivity = Connectivity::new(faces, &live);
+        for twin in surplus(&connectivity, faces.len(), reverses) {
+            live[twin.face as usize] = false;
+            let (face, first) = (twin.face, twin.first);
+            self.repairs
+                .push(Repair::DroppedOppositeFace { face, first });
+        }
+        let mut keep = live.iter();
+        self.soup.faces.retain(|_| keep.next() == Some(&true));
+        self.face_origin.retain(|&face| live[face as usize]);
+    }
+
+    /// Turns over the minority of each patch that is not oriented consistently.
+    fn orient(&mut self) {
+        let n_faces = self.soup.faces.len();
+        let patches = Connectivity::new(&self.soup.faces, &vec![true; n_faces]).patches();
+        // For each patch how many more of its faces agree with its lowest face than do not; none
+        // if it cannot be oriented.
+        let mut excess = vec![Some(0i64); n_faces];
+        for &(patch, _) in &patches.not_orientable {
+            excess[patch as usize] = None;
+        }
+        for &(patch, odd) in &patches.of_face {
+            if let Some(excess) = &mut excess[patch as usize] {
+                *excess += if odd { -1 } else { 1 };
+            }
+        }
+        let mut turned = BTreeMap::<u32, Vec<u32>>::new();
+        for (face, &(patch, odd)) in patches.of_face.iter().enumerate() {
+            if excess[patch as usize].is_some_and(|excess| odd == (excess >= 0)) {
+                self.soup.faces[face].swap(1, 2);
+                turned
+                    .entry(patch)
+                    .or_default()
+                    .push(self.face_origin[face]);
+            }
+        }
+        self.repairs.extend(
+            turned
+                .into_values()
+                .map(|faces| Repair::Reoriented { faces }),
+        );
+    }
+
+    /// Drops vertices in no face. Runs while vertices still are what they were.
+    fn drop_vertices(&mut self) {
+        let used = referenced(&self.soup);
+        let mut renamed = Vec::with_capacity(used.len());
+        let mut dropped = Vec::new();
+        let mut n_used = 0;
+        for (&used, vertex) in used.iter().zip(0u32..) {
+            renamed.push(n_used);
+            if used {
+                n_used += 1;
+            } else {
+                dropped.push(vertex);
+            }
+        }
+        if dropped.is_empty() {
+            return;
+        }
+        let mut keep = used.iter();
+        self.soup.positions.retain(|_| keep.next() == Some(&true));
+        self.vertex_origin.retain(|&vertex| used[vertex as usize]);
+        for vertex in self.soup.faces.iter_mut().flatten() {
+            *vertex = renamed[*vertex as usize];
+        }
+        self.repairs
+            .push(Repair::DroppedUnreferencedVertices { vertices: dropped });
+    }
+
+    /// Gives every fan but the first of each vertex a copy of it.
+    fn split_vertices(&mut self) {
+        let faces = self.soup.faces.clone();
+        let fans = Connectivity::new(&faces, &vec![true; faces.len()]).fans();
+        let n_vertices = self.soup.positions.len();
+        // The fan that keeps each vertex, and the copies made of it in order of their fans.
+        let mut keeper = vec![None; n_vertices];
+        let mut copy_of_fan = vec![0; 3 * faces.len()];
+        let mut copies = vec![Vec::new(); n_vertices];
+        for (&vertex, corner) in faces.iter().flatten().zip(0u32..) {
+            let fan = fans[corner as usize];
+            let v = vertex as usize;
+            if fan == *keeper[v].get_or_insert(fan) {
+                continue;
+            }
+            if fan == corner {
+                let copy = self.soup.positions.len() as u32;
+                self.soup.positions.push(self.soup.positions[v]);
+                self.vertex_origin.push(self.vertex_origin[v]);
+                copy_of_fan[fan as usize] = copy;
+                copies[v].push(copy);
+            }
+            self.soup.faces[(corner / 3) as usize][(corner % 3) as usize] =
+                copy_of_fan[fan as usize];
+        }
+        for (v, copies) in copies
+            .into_iter()
+            .enumerate()
+            .filter(|(_, copies)| !copies.is_empty())
+        {
+            let vertex = self.vertex_origin[v];
+            self.repairs.push(Repair::SplitVertex { vertex, copies });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

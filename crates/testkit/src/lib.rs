@@ -1,0 +1,30 @@
+//! Shapes and generators for the tests of Seamstress (not published).
+//!
+//! Every function returns a [`TriangleSoup`](seamstress_surface::soup::TriangleSoup) and is
+//! deterministic: what is random comes from a seed. Shapes have faces counter-clockwise seen from
+//! outside and lengths of about 1 unless they say otherwise. Arguments out of range panic: this
+//! crate serves tests alone.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod flips;
+mod modify;
+mod patches;
+mod random;
+mod rng;
+mod solids;
+mod tori;
+mod voxels;
+
+pub use flips::random_flips;
+pub use modify::{
+    bumpy, disjoint_union, klee, relabel, remove_faces, scale, stretch, subdivide, with_boundaries,
+};
+pub use patches::{annulus, cylinder, disk_grid, fan, graph, monkey_saddle, saddle};
+pub use random::random_surface;
+pub use rng::Rng;
+pub use solids::{cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
+pub use tori::{seven_vertex_torus, torus};
+pub use voxels::{double_torus, l_bracket, slab_with_holes, voxel_surface};
+
+#[cfg(test)]
+mod testing;
