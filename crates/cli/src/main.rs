@@ -1,2 +1,35 @@
-//! The seamstress command.
-fn main() {}
+//! The `seamstress` command: arguments in, library calls, a report out.
+
+mod args;
+mod check;
+mod faults;
+mod input;
+mod map;
+mod outcome;
+mod output;
+mod pictures;
+mod progress;
+mod report;
+mod stop;
+mod summary;
+mod system;
+mod text;
+
+use args::{Args, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let done = match &args.command {
+        Command::Map(args) => map::run(args),
+        Command::Check(args) => check::run(args),
+    };
+    match done {
+        Ok(status) => status.into(),
+        Err(failure) => {
+            text::tell(&format!("error: {failure}"));
+            failure.status().into()
+        }
+    }
+}

@@ -109,6 +109,24 @@ impl<T: Scalar> Cholesky<T> {
             MemStack::new(&mut self.workspace),
         );
     }
+
+    /// Solves for several right-hand sides at once, column after column in `rhs`; one pass over the
+    /// factor serves all. Needs no exclusive access, so threads can share the factor.
+    ///
+    /// # Errors
+    /// When there is no memory for the workspace.
+    pub fn solve_columns(&self, rhs: &mut [T], columns: usize) -> Result<(), NotPositiveDefinite> {
+        let n = self.symbolic.nrows();
+        let request = self.symbolic.solve_in_place_scratch::<T>(columns, Par::Seq);
+        let mut workspace = MemBuffer::try_new(request).map_err(|_| NotPositiveDefinite)?;
+        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut rhs[..n * columns], n, columns),
+            Par::Seq,
+            MemStack::new(&mut workspace),
+        );
+        Ok(())
+    }
 }
 
 fn symbolic_matrix(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
@@ -150,8 +168,16 @@ mod tests {
             let x: Vec<f64> = (0..30).map(|i| f64::from(i).sin()).collect();
             let mut b = vec![0.0; 30];
             pattern.multiply(&values, &x, &mut b);
+            let mut twice = b.repeat(2);
             cholesky.solve(&mut b);
             assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-12));
+            cholesky.solve_columns(&mut twice, 2).unwrap();
+            assert!(
+                b.repeat(2)
+                    .iter()
+                    .zip(&twice)
+                    .all(|(x, b)| (x - b).abs() < 1e-12)
+            );
         }
     }
 

@@ -8,17 +8,34 @@ use crate::layout::safeguards::{Laid, LayoutError, Route, lay_out};
 use crate::map::{SeamlessMap, Tolerance, Violations};
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
-use crate::rounding::{MatchedCut, RoundingOptions, RoundingStats, repair, round};
+use crate::quarter::turn;
+use crate::rounding::{
+    CleanUpError, CleanUpOptions, MatchedCut, RoundingOptions, RoundingStats, clean_up,
+    fix_holonomy, repair, round,
+};
 use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, Vertex, components};
 use std::time::Instant;
 
 /// Settings of the direct method.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct MapOptions {
     /// The rounding loop.
     pub rounding: RoundingOptions,
+    /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
+    /// cones as rounded.
+    pub cone_price: f64,
     /// Tolerance of the certificate.
     pub tolerance: Tolerance,
+}
+
+impl Default for MapOptions {
+    fn default() -> Self {
+        Self {
+            rounding: RoundingOptions::default(),
+            cone_price: 0.0006,
+            tolerance: Tolerance::default(),
+        }
+    }
 }
 
 /// A certified map and how it was made.
@@ -151,28 +168,110 @@ fn map_component(
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
-    let (z, rounding) = round(mesh, &metric, &mut matched, &options.rounding, watch)
+    let (frames, rounding) = round(mesh, &metric, &mut matched, &options.rounding, watch)
         .map_err(|e: HomotopyError| LayoutError::from(e))?;
     let (repaired_seams, _) = repair(mesh, &metric, &mut matched);
     clock.lap(Stage::Rounding, rounding.layouts);
 
     watch.enter(Stage::Layout)?;
-    let mut laid = lay_out(mesh, &metric, &matched, Some(&z), watch)?;
-    let newton = NewtonOptions {
-        max_iterations: 40,
-        tolerance: 1e-6,
-    };
-    let solution = laid.layout.minimize(laid.y, &SymmetricDirichlet, &newton);
-    laid.y = solution.y;
-    clock.lap(Stage::Layout, laid.homotopy_steps + solution.iterations);
+    let laid = lay_out(mesh, &metric, &matched, Some(&frames), watch)?;
+    let mut finished = Finished::new(laid, watch)?;
+    clock.lap(Stage::Layout, finished.iterations);
 
-    watch.enter(Stage::Polish)?;
-    let iterations = polish(&mut laid, watch)?;
-    clock.lap(Stage::Polish, iterations);
+    if options.cone_price > 0.0 {
+        watch.enter(Stage::CleanUp)?;
+        let (better, iterations) =
+            fewer_cones(mesh, &metric, &matched, finished, options.cone_price, watch)?;
+        finished = better;
+        clock.lap(Stage::CleanUp, iterations);
+    }
 
-    let uvs = corner_uvs(mesh, &metric, &mut laid);
-    let stats = component_stats(mesh, &laid, &rounding, repaired_seams, clock.laps);
+    let uvs = corner_uvs(mesh, &metric, &mut finished.laid);
+    let stats = component_stats(mesh, &finished.laid, &rounding, repaired_seams, clock.laps);
     Ok((uvs, stats))
+}
+
+/// A layout of least symmetric Dirichlet energy with its worst triangles polished.
+struct Finished {
+    laid: Laid,
+    symmetric_dirichlet: f64,
+    tau: f64,
+    iterations: usize,
+}
+
+impl Finished {
+    fn new(mut laid: Laid, watch: &mut Watch<'_, '_>) -> Result<Self, Cancelled> {
+        let options = NewtonOptions {
+            max_iterations: 40,
+            tolerance: 1e-6,
+        };
+        let solution = laid.layout.minimize(laid.y, &SymmetricDirichlet, &options);
+        laid.y = solution.y;
+        let polishing = polish(&mut laid, watch)?;
+        let (symmetric_dirichlet, tau) = laid.layout.distortion(&laid.y);
+        let iterations = laid.homotopy_steps + solution.iterations + polishing;
+        Ok(Self {
+            laid,
+            symmetric_dirichlet,
+            tau,
+            iterations,
+        })
+    }
+}
+
+/// Bounds on the log scale that clean-up tries, loosest first.
+const SCALE_BOUNDS: [f64; 2] = [f64::INFINITY, 0.35];
+/// Clean-up may raise tau by this factor, and the excess of the symmetric Dirichlet energy over 4.
+const TAU_GROWTH: f64 = 1.05;
+const EXCESS_GROWTH: f64 = 1.2;
+
+/// Cleans the cones up and lays out again; keeps the result only if it is worth its price.
+fn fewer_cones(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &MatchedCut,
+    before: Finished,
+    price: f64,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Finished, usize), LayoutError> {
+    let mut iterations = 0;
+    for largest_scale in SCALE_BOUNDS {
+        let mut cleaned = matched.clone();
+        let options = CleanUpOptions {
+            price,
+            largest_scale,
+        };
+        let (stats, gauge) = match clean_up(mesh, metric, &mut cleaned, &options, watch) {
+            Ok(done) => done,
+            Err(CleanUpError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(CleanUpError::Numeric(_)) => break,
+        };
+        if stats.cancelled + stats.moved == 0 {
+            break;
+        }
+        fix_holonomy(mesh, metric, &mut cleaned)?;
+        let frames = before.laid.layout.frames(&before.laid.y);
+        let frames: Vec<_> = frames
+            .into_iter()
+            .zip(gauge.iter())
+            .map(|(r, &k)| turn(r, k))
+            .collect();
+        let after = match lay_out(mesh, metric, &cleaned, Some(&frames), watch) {
+            Ok(laid) => Finished::new(laid, watch)?,
+            Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(_) => continue,
+        };
+        iterations += after.iterations;
+        let saved = stats.cones_before as f64 - stats.cones_after as f64;
+        let excess = |f: &Finished| f.symmetric_dirichlet - 4.0;
+        if excess(&after) < excess(&before) + price * saved
+            && excess(&after) <= EXCESS_GROWTH * excess(&before)
+            && after.tau <= TAU_GROWTH * before.tau
+        {
+            return Ok((after, iterations));
+        }
+    }
+    Ok((before, iterations))
 }
 
 /// The dual tree that crosses flat edges first, so that seams run through curved vertices.

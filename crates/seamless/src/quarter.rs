@@ -27,6 +27,11 @@ pub fn rotation(quarters: f64) -> Complex64 {
 /// Unit complex number in the direction of `z`, 1 for zero.
 #[inline]
 pub fn direction(z: Complex64) -> Complex64 {
+    // The square is safe: lengths are in mean edges. Tiny ones take the careful way.
+    let square = z.norm_sqr();
+    if square > 1e-200 {
+        return z / square.sqrt();
+    }
     let norm = z.norm();
     if norm > 0.0 { z / norm } else { Complex64::ONE }
 }

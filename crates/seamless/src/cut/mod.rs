@@ -6,6 +6,7 @@ mod steiner;
 
 pub use chains::{Chain, SeamGraph};
 pub use dual_tree::DualTree;
+pub(crate) use steiner::Ordered;
 pub use steiner::connect_cones;
 
 use seamstress_surface::{Halfedge, HalfedgeData, TriMesh};

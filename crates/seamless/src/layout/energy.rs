@@ -14,12 +14,16 @@ pub struct Jet {
     pub dd: [f64; 3],
 }
 
-/// An energy per triangle that grows without bound as the triangle collapses.
+/// An energy per triangle; most grow without bound as the triangle collapses.
 pub trait Energy: Sync {
-    /// Value at singular values with `s2 > 0`.
+    /// Value at singular values, with `s2 > 0` unless flips are allowed.
     fn value(&self, s1: f64, s2: f64) -> f64;
     /// Value and derivatives.
     fn jet(&self, s1: f64, s2: f64) -> Jet;
+    /// Whether flipped triangles have a finite energy too.
+    fn allows_flips(&self) -> bool {
+        false
+    }
 }
 
 /// Symmetric Dirichlet energy `s1^2 + s2^2 + 1/s1^2 + 1/s2^2`, 4 at an isometry.
@@ -85,6 +89,59 @@ impl Energy for PowerOfDirichlet {
     }
 }
 
+/// `(s1^2 + s2^2 + 1 + (s1 s2)^2) / chi(s1 s2)` with `chi(D) = (D + sqrt(eps^2 + D^2)) / 2`: finite for
+/// flipped triangles, and a barrier against them as eps goes to zero (Garanzha et al. 2021).
+#[derive(Debug, Clone, Copy)]
+pub struct Untangling {
+    /// Width of the regularisation, in units of the determinant.
+    pub eps: f64,
+}
+
+impl Untangling {
+    /// `chi` and its first two derivatives.
+    #[inline]
+    pub fn chi(&self, d: f64) -> [f64; 3] {
+        let q = self.eps.hypot(d);
+        let value = if d >= 0.0 {
+            0.5 * (d + q)
+        } else {
+            0.5 * self.eps * self.eps / (q - d)
+        };
+        [value, value / q, 0.5 * self.eps * self.eps / (q * q * q)]
+    }
+}
+
+impl Energy for Untangling {
+    fn value(&self, s1: f64, s2: f64) -> f64 {
+        let d = s1 * s2;
+        (s1 * s1 + s2 * s2 + 1.0 + d * d) / self.chi(d)[0]
+    }
+
+    fn jet(&self, s1: f64, s2: f64) -> Jet {
+        let d = s1 * s2;
+        let [chi, c1, c2] = self.chi(d);
+        let value = (s1 * s1 + s2 * s2 + 1.0 + d * d) / chi;
+        let (n1, n2) = (2.0 * s1 + 2.0 * d * s2, 2.0 * s2 + 2.0 * d * s1);
+        let (n11, n12, n22) = (2.0 + 2.0 * s2 * s2, 4.0 * d, 2.0 + 2.0 * s1 * s1);
+        let (x1, x2) = (c1 * s2, c1 * s1);
+        let (x11, x12, x22) = (c2 * s2 * s2, c2 * d + c1, c2 * s1 * s1);
+        let (f1, f2) = ((n1 - value * x1) / chi, (n2 - value * x2) / chi);
+        Jet {
+            value,
+            d: [f1, f2],
+            dd: [
+                (n11 - 2.0 * f1 * x1 - value * x11) / chi,
+                (n12 - f1 * x2 - f2 * x1 - value * x12) / chi,
+                (n22 - 2.0 * f2 * x2 - value * x22) / chi,
+            ],
+        }
+    }
+
+    fn allows_flips(&self) -> bool {
+        true
+    }
+}
+
 /// A Jacobian split in similarity and anti-similarity, `J v = similar v + anti conj(v)`.
 #[derive(Debug, Clone, Copy)]
 pub struct Jacobian {
@@ -107,7 +164,7 @@ impl Jacobian {
     /// Signed singular values, the larger first; the second is negative for a flipped triangle.
     #[inline]
     pub fn singular_values(&self) -> (f64, f64) {
-        let (a, b) = (self.similar.norm(), self.anti.norm());
+        let (a, b) = (self.similar.norm_sqr().sqrt(), self.anti.norm_sqr().sqrt());
         (a + b, a - b)
     }
 }
@@ -243,6 +300,7 @@ mod tests {
     fn derivatives_match_differences() {
         check_derivatives(&SymmetricDirichlet);
         check_derivatives(&PowerOfDirichlet { p: 4, bound: 5.0 });
+        check_derivatives(&Untangling { eps: 0.3 });
     }
 
     #[test]

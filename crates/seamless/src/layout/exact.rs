@@ -98,23 +98,21 @@ impl ExactLayout {
         Ok(Poisson::new(&mut self.problem)?.solve(&targets))
     }
 
-    /// As-rigid-as-possible layout that starts from the frames of one of the all-seam cut.
+    /// As-rigid-as-possible layout that starts from frames in the gauge of the all-seam cut.
     ///
     /// # Errors
     /// When the system cannot be factored.
     pub fn arap(
         &mut self,
-        mesh: &TriMesh,
-        all_seams: &Cut,
-        z: &[Complex64],
+        frames: &[Complex64],
         iterations: usize,
     ) -> Result<Vec<f64>, NotPositiveDefinite> {
-        let rotations = self
-            .jacobians(mesh, all_seams, z)
+        let turned = frames
             .iter()
-            .map(|[x, y]| crate::quarter::direction(x - y * Complex64::I))
+            .zip(self.gauge.iter())
+            .map(|(&r, &k)| turn(r, k))
             .collect();
-        Ok(Poisson::new(&mut self.problem)?.arap(rotations, iterations))
+        Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations))
     }
 
     /// Images of the axes under a layout of another cut, turned into this gauge.
@@ -134,9 +132,13 @@ impl ExactLayout {
             .collect()
     }
 
-    /// Rotations of the triangles of a layout.
+    /// Rotations of the triangles of a layout, in the gauge of the all-seam cut.
     pub fn frames(&self, y: &[f64]) -> Vec<Complex64> {
-        frames(self.problem.triangles(), &self.expand(y))
+        let here = frames(self.problem.triangles(), &self.expand(y));
+        here.into_iter()
+            .zip(self.gauge.iter())
+            .map(|(r, &k)| turn(r, -k))
+            .collect()
     }
 
     /// Minimises an energy; the start must be free of flips.
@@ -154,6 +156,42 @@ impl ExactLayout {
         self.problem.set_metric(mesh, metric, &self.cut);
     }
 
+    /// Scales the unknowns to the best global scale of the symmetric Dirichlet energy.
+    pub fn rescale(&self, y: &mut [f64]) {
+        let scale = self.measure(y).best_scale();
+        if scale.is_finite() && scale > 0.0 {
+            y.iter_mut().for_each(|x| *x *= scale);
+        }
+    }
+
+    /// Mean symmetric Dirichlet energy at its best scale, and tau.
+    pub fn distortion(&self, y: &[f64]) -> (f64, f64) {
+        let m = self.measure(y);
+        (
+            2.0 * (m.squares * m.inverse_squares).sqrt(),
+            (m.largest / m.smallest).sqrt(),
+        )
+    }
+
+    fn measure(&self, y: &[f64]) -> Measure {
+        let z = self.expand(y);
+        let start = Measure {
+            squares: 0.0,
+            inverse_squares: 0.0,
+            largest: 0.0,
+            smallest: f64::INFINITY,
+        };
+        self.problem.triangles().iter().fold(start, |m, t| {
+            let (s1, s2) = t.jacobian(&z).singular_values();
+            Measure {
+                squares: m.squares + t.weight * (s1 * s1 + s2 * s2),
+                inverse_squares: m.inverse_squares + t.weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2)),
+                largest: m.largest.max(s1),
+                smallest: m.smallest.min(s2),
+            }
+        })
+    }
+
     /// Counts flips and wrong angles.
     pub fn defects(&self, mesh: &TriMesh, y: &[f64]) -> Defects {
         let z = self.expand(y);
@@ -168,6 +206,20 @@ impl ExactLayout {
             flips: self.problem.triangles().iter().filter(flipped).count(),
             wrong_angles: wrong.count(),
         }
+    }
+}
+
+/// Area-weighted means of the singular values' squares, and their extremes.
+struct Measure {
+    squares: f64,
+    inverse_squares: f64,
+    largest: f64,
+    smallest: f64,
+}
+
+impl Measure {
+    fn best_scale(&self) -> f64 {
+        (self.inverse_squares / self.squares).powf(0.25)
     }
 }
 

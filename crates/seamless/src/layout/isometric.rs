@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn unfolding_keeps_lengths_and_rotations_agree_with_positions() {
-        let soup = testkit::bumpy(testkit::icosphere(2), 0.05, 3);
+        let soup = testkit::bumpy(&testkit::icosphere(2), 0.05, 3);
         let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
         let metric = Metric::from_positions(&mesh, &soup.positions);
         let tree = DualTree::lightest(&mesh, |h| metric.length[h]);

@@ -49,7 +49,8 @@ const STEP_FRACTION: f64 = 0.9;
 const DECREASE: f64 = 1e-4;
 const MAX_HALVINGS: usize = 40;
 
-/// Minimises an energy from a layout without flips; never leaves the flip-free region.
+/// Minimises an energy from a layout without flips, never leaving the flip-free region (unless the energy
+/// allows flips).
 ///
 /// Each iteration solves with the Hessian whose per-triangle blocks are projected to positive
 /// semi-definite ones, steps at most 0.9 of the way to the first collapsing triangle (Smith and
@@ -80,7 +81,11 @@ pub fn minimize(
         step.iter_mut().for_each(|x| *x = -*x);
         let slope: f64 = gradient.iter().zip(&step).map(|(g, s)| g * s).sum();
         let dz = problem.space().expand(&step);
-        let mut t = (STEP_FRACTION * largest_step(problem.triangles(), &now.z, &dz)).min(1.0);
+        let mut t = if energy.allows_flips() {
+            1.0
+        } else {
+            (STEP_FRACTION * largest_step(problem.triangles(), &now.z, &dz)).min(1.0)
+        };
         let accepted = (0..MAX_HALVINGS).find_map(|_| {
             let z: Vec<_> = now.z.iter().zip(&dz).map(|(z, d)| z + d * t).collect();
             let value = problem.value(energy, &z);

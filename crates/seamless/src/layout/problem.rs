@@ -271,7 +271,7 @@ impl LayoutProblem {
     pub fn value(&self, energy: &impl Energy, z: &[Complex64]) -> f64 {
         let sum = sum_over(&self.triangles, |t| {
             let (s1, s2) = t.jacobian(z).singular_values();
-            if s2 > 0.0 && t.doubled_area(z) > 0.0 {
+            if energy.allows_flips() || (s2 > 0.0 && t.doubled_area(z) > 0.0) {
                 t.weight * energy.value(s1, s2)
             } else {
                 f64::INFINITY

@@ -1,6 +1,6 @@
 //! From rounded matchings to a flip-free exact layout, by the cheapest route that works.
 
-use super::energy::SymmetricDirichlet;
+use super::energy::{SymmetricDirichlet, Untangling};
 use super::exact::{Defects, ExactLayout};
 use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::newton::NewtonOptions;
@@ -17,6 +17,8 @@ use seamstress_surface::{HalfedgeData, Metric, TriMesh};
 pub enum Route {
     /// As-rigid-as-possible iterations in the exact space.
     Rigid,
+    /// The same, and untangling of the few triangles it flipped.
+    Untangled,
     /// The barrier homotopy from the isometric layout.
     Barrier,
     /// The lifted continuation from the isometric layout.
@@ -34,6 +36,7 @@ impl std::fmt::Display for Route {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Route::Rigid => f.write_str("rigid layout"),
+            Route::Untangled => f.write_str("rigid layout, untangled"),
             Route::Barrier => f.write_str("barrier homotopy"),
             Route::Continuation => f.write_str("lifted continuation"),
             Route::Retreed => f.write_str("lifted continuation over a new tree"),
@@ -78,6 +81,9 @@ impl From<HomotopyError> for LayoutError {
 }
 
 const RIGID_ITERATIONS: usize = 20;
+/// More flips than this share of the triangles are left to the homotopies.
+const UNTANGLE_SHARE: f64 = 0.01;
+const UNTANGLE_ROUNDS: usize = 15;
 const SNOWFLAKES: [f64; 2] = [0.5, 0.3];
 /// Exponents on the way back from a snowflake metric.
 const WAY_BACK: [f64; 7] = [0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
@@ -86,12 +92,12 @@ const SETTLE: NewtonOptions = NewtonOptions {
     tolerance: 1e-4,
 };
 
-/// Lays out matched seams exactly: rigid layout, barrier homotopy, lifted continuation, the same over a
+/// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation, the same over a
 /// better dual tree, the same in snowflake metrics, in this order, until one has no flip and no wrong
 /// cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
 ///
 /// `metric` is the one to solve in, `exponent` the snowflake exponent it has already (1 for a plain
-/// metric); `start` a layout of the all-seam cut to take first frames from.
+/// metric); `start` frames in the gauge of the all-seam cut.
 pub fn lay_out(
     mesh: &TriMesh,
     metric: &Metric,
@@ -100,15 +106,27 @@ pub fn lay_out(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Laid, LayoutError> {
     let mut layout = ExactLayout::new(mesh, metric, matched)?;
-    if let Some(z) = start {
-        let y = layout.arap(mesh, &matched.cut, z, RIGID_ITERATIONS)?;
-        if layout.defects(mesh, &y).none() {
+    if let Some(frames) = start {
+        let y = layout.arap(frames, RIGID_ITERATIONS)?;
+        let defects = layout.defects(mesh, &y);
+        if defects.none() {
             return Ok(Laid {
                 layout,
                 y,
                 route: Route::Rigid,
                 homotopy_steps: 0,
             });
+        }
+        if (defects.flips as f64) < UNTANGLE_SHARE * mesh.n_faces() as f64 {
+            let (y, steps) = untangle(&mut layout, y, watch)?;
+            if layout.defects(mesh, &y).none() {
+                return Ok(Laid {
+                    layout,
+                    y,
+                    route: Route::Untangled,
+                    homotopy_steps: steps,
+                });
+            }
         }
     }
     let mut homotopy_steps = 0;
@@ -155,6 +173,50 @@ pub fn lay_out(
         }
     }
     Err(LayoutError::Defective(last))
+}
+
+/// Pulls flipped triangles open by Newton steps on a regularised barrier that sharpens (Garanzha et al.
+/// 2021). It may leave wrong angles: check after it.
+fn untangle(
+    layout: &mut ExactLayout,
+    mut y: Vec<f64>,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<f64>, usize), Cancelled> {
+    let options = NewtonOptions {
+        max_iterations: 2,
+        tolerance: 1e-6,
+    };
+    let least_determinant = |layout: &ExactLayout, y: &[f64]| {
+        let z = layout.expand(y);
+        let determinants = layout.problem().triangles().iter().map(|t| {
+            let (s1, s2) = t.jacobian(&z).singular_values();
+            s1 * s2
+        });
+        determinants.fold(f64::INFINITY, f64::min)
+    };
+    let mut least = least_determinant(layout, &y);
+    let mut eps = (1e-4 + 0.04 * least.min(0.0).powi(2)).sqrt();
+    let mut steps = 0;
+    for _ in 0..UNTANGLE_ROUNDS {
+        watch.tick(0.5)?;
+        let energy = Untangling { eps };
+        let before = layout.problem().value(&energy, &layout.expand(&y));
+        let solution = layout.minimize(y, &energy, &options);
+        (y, steps) = (solution.y, steps + solution.iterations.max(1));
+        least = least_determinant(layout, &y);
+        if least > 0.0 {
+            break;
+        }
+        // The paper's rule: shrink eps by as much as the energy fell, so that it keeps falling.
+        let fall = (1.0 - solution.energy / before).max(0.1);
+        let goal = (1.0 - fall) * energy.chi(least)[0];
+        eps = if least < goal {
+            2.0 * (goal * (goal - least)).sqrt()
+        } else {
+            1e-9
+        };
+    }
+    Ok((y, steps))
 }
 
 /// Barrier, continuation, continuation over a new tree.
@@ -257,21 +319,4 @@ pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedC
         other.matching[s] = regauged[h] + shift;
     }
     other
-}
-
-impl ExactLayout {
-    /// Scales the unknowns to the best global scale of the symmetric Dirichlet energy.
-    pub fn rescale(&self, y: &mut [f64]) {
-        let z = self.expand(y);
-        let (mut squares, mut inverse_squares) = (0.0, 0.0);
-        for t in self.problem().triangles() {
-            let (s1, s2) = t.jacobian(&z).singular_values();
-            squares += t.weight * (s1 * s1 + s2 * s2);
-            inverse_squares += t.weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2));
-        }
-        let scale = (inverse_squares / squares).powf(0.25);
-        if scale.is_finite() && scale > 0.0 {
-            y.iter_mut().for_each(|x| *x *= scale);
-        }
-    }
 }

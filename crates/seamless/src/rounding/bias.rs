@@ -42,15 +42,18 @@ pub struct RoundingStats {
 /// Cost threshold of the first and last round.
 const FIRST_THRESHOLD: f64 = 0.05;
 const LAST_THRESHOLD: f64 = 1.0;
+/// A new layout is worth its time once this share of the seams was rounded.
+const LAYOUT_SHARE: f64 = 0.005;
 /// Roundings that turn a seam by more than this (quarters) keep apart within a round.
 const LARGE_TURN: f64 = 0.1;
 
-/// Rounds the matchings of all seams, cheapest first, laying the mesh out again after each round.
+/// Rounds the matchings of all seams, cheapest first, laying the mesh out again after each round that
+/// changed enough.
 ///
 /// The cost of turning a seam of rotation r by d = i - r to the integer i, with k the real indices of
 /// its ends, is `|d| + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves curvature from one
-/// end to the other, and the second term is the change of total absolute curvature. Returns the layout
-/// of the all-seam cut that the last round left.
+/// end to the other, and the second term is the change of total absolute curvature. Returns the
+/// rotations of the faces in the last layout of the all-seam cut.
 pub fn round(
     mesh: &TriMesh,
     metric: &Metric,
@@ -64,6 +67,7 @@ pub fn round(
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;
     let mut stats = RoundingStats::default();
+    let mut since_layout = 0;
     while !open.is_empty() {
         watch.tick(1.0 - open.len() as f64 / total)?;
         let growth = stats.rounds as f64 / (options.rounds.max(2) - 1) as f64;
@@ -96,6 +100,11 @@ pub fn round(
             .iter()
             .for_each(|&(seam, _)| is_chosen[seam as usize] = true);
         open.retain(|&seam| !is_chosen[seam as usize]);
+        since_layout += chosen.len();
+        if (since_layout as f64) < LAYOUT_SHARE * total && !open.is_empty() {
+            continue;
+        }
+        since_layout = 0;
         relaxation.relax(options.layout_iterations)?;
         stats.layouts += 1;
         for &seam in &open {
@@ -103,7 +112,7 @@ pub fn round(
             *r = relaxation.rotation(seam as usize, *r);
         }
     }
-    Ok((relaxation.positions().to_vec(), stats))
+    Ok((relaxation.frames(), stats))
 }
 
 /// Indices at the current rotations; zero on the boundary, where they are free.

@@ -43,8 +43,8 @@ impl Report {
 /// Lists all faults of a soup, and measures it.
 ///
 /// A face that refers to a missing vertex, repeats a vertex or copies another face is named for
-/// that alone: the faults of edges and vertices, and all [`Facts`] but the counts of elements,
-/// leave it out.
+/// that alone: the faults of edges and vertices, and all [`Facts`] but the numbers of faces and
+/// vertices, leave it out.
 ///
 /// Without errors the soup is an oriented manifold with boundary whose every ordered pair of
 /// vertices is a side of at most one face. Two opposite triangles on the same three vertices, and

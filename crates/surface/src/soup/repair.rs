@@ -119,34 +119,18 @@ pub struct Repaired {
 /// range, or with more elements than can be numbered, is returned as it is.
 #[must_use]
 pub fn repair(soup: TriangleSoup) -> Repaired {
-    let n_vertices = soup.positions.len();
-    let too_large = soup.faces.len() > MAX_FACES || n_vertices > MAX_VERTICES;
-    if too_large
-        || soup
-            .faces
-            .iter()
-            .flatten()
-            .any(|&v| v as usize >= n_vertices)
-    {
-        let (vertex_origin, face_origin) = (
-            (0..n_vertices as u32).collect(),
-            (0..soup.faces.len() as u32).collect(),
-        );
-        return Repaired {
-            soup,
-            repairs: Vec::new(),
-            vertex_origin,
-            face_origin,
-        };
-    }
-    let face_origin = (0..soup.faces.len() as u32).collect();
-    let vertex_origin = (0..n_vertices as u32).collect();
+    let (n_vertices, n_faces) = (soup.positions.len(), soup.faces.len());
     let mut work = Repaired {
         soup,
         repairs: Vec::new(),
-        vertex_origin,
-        face_origin,
+        vertex_origin: (0..n_vertices as u32).collect(),
+        face_origin: (0..n_faces as u32).collect(),
     };
+    let is_missing = |&vertex: &u32| vertex as usize >= n_vertices;
+    let too_large = n_faces > MAX_FACES || n_vertices > MAX_VERTICES;
+    if too_large || work.soup.faces.iter().flatten().any(is_missing) {
+        return work;
+    }
     work.drop_faces();
     work.orient();
     work.drop_vertices();

@@ -1,0 +1,278 @@
+//! Output files: checked before the work, written after it, put in place together.
+
+use crate::args::MapArgs;
+use crate::outcome::Failure;
+use crate::pictures;
+use seamstress_io::{AtomicFile, Format};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Kind {
+    Map,
+    Report,
+    Cones,
+    Picture,
+}
+
+/// A file to be written.
+#[derive(Debug, Clone, serde::Serialize)]
+pub(crate) struct Target {
+    pub(crate) kind: Kind,
+    #[serde(serialize_with = "as_text")]
+    pub(crate) path: PathBuf,
+}
+
+fn as_text<S: serde::Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
+}
+
+/// All files to be written: the map last, since it says that the rest is there.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) targets: Vec<Target>,
+    /// The folder that may have to be made.
+    folder: Option<PathBuf>,
+}
+
+impl Plan {
+    /// Plans the outputs of a run.
+    ///
+    /// # Errors
+    /// If an output would replace the input or another output, or cannot be written.
+    pub(crate) fn new(args: &MapArgs) -> Result<Self, Failure> {
+        let mut targets = Vec::new();
+        let mut add = |kind, path: &Path| {
+            let path = path.to_owned();
+            targets.push(Target { kind, path });
+        };
+        if let Some(folder) = &args.pictures {
+            for name in pictures::NAMES {
+                add(Kind::Picture, &folder.join(name));
+            }
+        }
+        if let Some(path) = &args.cones {
+            add(Kind::Cones, path);
+        }
+        if let Some(path) = &args.report {
+            add(Kind::Report, path);
+        }
+        add(Kind::Map, &args.output);
+        let plan = Self {
+            targets,
+            folder: args.pictures.clone(),
+        };
+        refuse_other_formats(&args.output)?;
+        plan.refuse_clashes(&args.mesh)?;
+        plan.probe()?;
+        Ok(plan)
+    }
+
+    fn refuse_clashes(&self, input: &Path) -> Result<(), Failure> {
+        let input_id = identity(input);
+        let mut seen: Vec<PathBuf> = self.folder.iter().map(|folder| identity(folder)).collect();
+        for Target { path, .. } in &self.targets {
+            let id = identity(path);
+            let shown = path.display();
+            if id == input_id {
+                let text = format!("{shown} is the input; write the output to another file");
+                return Err(Failure::Usage(text));
+            }
+            if seen.contains(&id) {
+                let text = format!("two outputs have the path {shown}; give each its own");
+                return Err(Failure::Usage(text));
+            }
+            seen.push(id);
+        }
+        Ok(())
+    }
+
+    /// Tries every output with a file that vanishes again.
+    fn probe(&self) -> Result<(), Failure> {
+        let folder = self.folder.as_deref().filter(|folder| !folder.exists());
+        if let Some(folder) = folder {
+            let base = missing(folder).last().copied().unwrap_or(folder);
+            // The name is that of the folder to be made, which is not there.
+            AtomicFile::create(base)?;
+        }
+        for Target { path, .. } in &self.targets {
+            let is_in_new_folder =
+                folder.is_some_and(|folder| identity(parent(path)) == identity(folder));
+            if !is_in_new_folder {
+                AtomicFile::create(path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts writing; makes the folder if it does not exist.
+    pub(crate) fn begin(&self) -> Result<Batch, Failure> {
+        let mut batch = Batch::default();
+        if let Some(folder) = &self.folder {
+            batch.make(folder)?;
+        }
+        Ok(batch)
+    }
+}
+
+fn refuse_other_formats(output: &Path) -> Result<(), Failure> {
+    match Format::from_path(output) {
+        Some(format) if format != Format::Obj => Err(Failure::Usage(format!(
+            "{}: maps are written as OBJ, not {format}; give the output a name in .obj",
+            output.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// The same for all paths to a file, whether it exists or not.
+fn identity(path: &Path) -> PathBuf {
+    let with_parent = || {
+        let parent = fs::canonicalize(parent(path)).ok()?;
+        Some(parent.join(path.file_name()?))
+    };
+    fs::canonicalize(path)
+        .ok()
+        .or_else(with_parent)
+        .or_else(|| std::path::absolute(path).ok())
+        .unwrap_or_else(|| path.to_owned())
+}
+
+fn parent(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
+        Some(parent) => parent,
+        None => path,
+    }
+}
+
+/// The folders that are missing on the way to one, innermost first.
+fn missing(folder: &Path) -> Vec<&Path> {
+    folder
+        .ancestors()
+        .take_while(|path| !path.as_os_str().is_empty() && !path.exists())
+        .collect()
+}
+
+/// Files being written. Without a commit nothing stays.
+#[derive(Debug, Default)]
+pub(crate) struct Batch {
+    files: Vec<AtomicFile>,
+    /// Folders and files made, in order, to be removed again.
+    made_folders: Vec<PathBuf>,
+    made_files: Vec<PathBuf>,
+}
+
+impl Batch {
+    fn make(&mut self, folder: &Path) -> Result<(), Failure> {
+        for path in missing(folder).into_iter().rev() {
+            fs::create_dir(path).map_err(|cause| Failure::Output {
+                path: path.to_owned(),
+                cause,
+            })?;
+            self.made_folders.push(path.to_owned());
+        }
+        Ok(())
+    }
+
+    /// Writes a file, out of sight as yet.
+    pub(crate) fn write(
+        &mut self,
+        path: &Path,
+        content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let mut file = AtomicFile::create(path)?;
+        content(&mut file)
+            .and_then(|()| io::Write::flush(&mut file))
+            .map_err(|error| Failure::Usage(error.to_string()))?;
+        self.files.push(file);
+        Ok(())
+    }
+
+    /// Puts all files in place, in the order they were written.
+    ///
+    /// # Errors
+    /// If one cannot be put in place; the new ones before it are removed then.
+    pub(crate) fn commit(mut self) -> Result<(), Failure> {
+        for file in std::mem::take(&mut self.files) {
+            let path = file.path().to_owned();
+            let is_new = !path.exists();
+            file.commit()?;
+            if is_new {
+                self.made_files.push(path);
+            }
+        }
+        self.made_files.clear();
+        self.made_folders.clear();
+        Ok(())
+    }
+}
+
+impl Drop for Batch {
+    fn drop(&mut self) {
+        // Temporary files go before the folder they are in.
+        self.files.clear();
+        for path in &self.made_files {
+            let _ = fs::remove_file(path);
+        }
+        for path in self.made_folders.iter().rev() {
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn write(batch: &mut Batch, path: &Path) {
+        let written = batch.write(path, |file| file.write_all(b"new"));
+        assert!(written.is_ok(), "{written:?}");
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
+        let names = fs::read_dir(folder).unwrap().map(name);
+        names.map(|name| name.to_string_lossy().into()).collect()
+    }
+
+    #[test]
+    fn when_the_last_file_fails_nothing_new_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, map] = ["new/deep/first", "map"].map(|name| folder.path().join(name));
+        let mut batch = Batch::default();
+        batch.make(parent(&first)).unwrap();
+        write(&mut batch, &first);
+        write(&mut batch, &map);
+        // A folder cannot be replaced by a file.
+        fs::create_dir(&map).unwrap();
+        assert!(batch.commit().is_err());
+        assert_eq!(names(folder.path()), ["map"]);
+    }
+
+    #[test]
+    fn a_commit_puts_all_in_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, map] = ["new/first", "map"].map(|name| folder.path().join(name));
+        let mut batch = Batch::default();
+        batch.make(parent(&first)).unwrap();
+        write(&mut batch, &first);
+        write(&mut batch, &map);
+        assert!(!map.exists());
+        batch.commit().unwrap();
+        assert!(first.is_file() && map.is_file());
+    }
+
+    #[test]
+    fn paths_to_one_file_are_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("a")).unwrap();
+        let [x, y, z] = ["b", "a/../b", "a/b"].map(|name| identity(&folder.path().join(name)));
+        assert_eq!(x, y);
+        assert_ne!(x, z);
+    }
+}

@@ -1,0 +1,41 @@
+//! Pictures of a map as PNG files.
+
+use seamstress::SeamlessMap;
+use seamstress_render::{
+    LayoutOptions, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
+};
+use seamstress_surface::soup::TriangleSoup;
+
+/// The files, in the order of [`draw`].
+pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
+
+/// Draws the surface from both sides and the layout.
+pub(crate) fn draw(soup: &TriangleSoup, map: &SeamlessMap) -> Result<[Vec<u8>; 3], RenderError> {
+    let cones: Vec<(u32, i32)> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
+    let seams: Vec<[u32; 2]> = map.seams().iter().map(|s| s.vertices).collect();
+    let scene = Scene {
+        positions: &soup.positions,
+        faces: &soup.faces,
+        corner_uvs: Some(map.corner_uvs()),
+        cones: &cones,
+        seams: &seams,
+        features: &[],
+    };
+    let surface = |view| {
+        let options = SurfaceOptions {
+            view,
+            ..SurfaceOptions::default()
+        };
+        render_surface(&scene, &options)
+    };
+    let images = [
+        surface(View::Front)?,
+        surface(View::Back)?,
+        render_layout(&scene, &LayoutOptions::default())?,
+    ];
+    let mut files = [const { Vec::new() }; 3];
+    for (image, file) in images.iter().zip(&mut files) {
+        image.write_png(file)?;
+    }
+    Ok(files)
+}

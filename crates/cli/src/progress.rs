@@ -1,0 +1,77 @@
+//! Progress bars on standard error.
+
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use seamstress::{Progress, Stage};
+use std::io::IsTerminal;
+use std::time::Duration;
+
+/// Ticks of a full bar.
+const FULL: u64 = 1000;
+const REDRAW: Duration = Duration::from_millis(200);
+
+/// One bar per stage; hidden where nobody looks.
+#[derive(Debug, Clone)]
+pub(crate) struct Bars {
+    all: MultiProgress,
+    current: Option<(usize, Stage, ProgressBar)>,
+}
+
+impl Bars {
+    /// Bars that show only on a terminal, and only when wanted.
+    pub(crate) fn new(wanted: bool) -> Self {
+        let target = if wanted && std::io::stderr().is_terminal() {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
+        };
+        Self {
+            all: MultiProgress::with_draw_target(target),
+            current: None,
+        }
+    }
+
+    /// Shows where the work stands.
+    pub(crate) fn show(&mut self, progress: Progress) {
+        let (component, stage) = (progress.component, progress.stage);
+        let is_current = |&(c, s, _): &(usize, Stage, ProgressBar)| (c, s) == (component, stage);
+        if !self.current.as_ref().is_some_and(is_current) {
+            self.finish_stage(progress.n_components == 1);
+            let bar = self.all.add(bar(&progress));
+            self.current = Some((component, stage, bar));
+        }
+        if let Some((_, _, bar)) = &self.current {
+            bar.set_position((FULL as f64 * progress.fraction) as u64);
+        }
+    }
+
+    /// Ends the current bar; the bars of many components would fill the screen.
+    fn finish_stage(&mut self, keep: bool) {
+        match self.current.take() {
+            Some((_, _, bar)) if keep => bar.finish(),
+            Some((_, _, bar)) => bar.finish_and_clear(),
+            None => {}
+        }
+    }
+
+    /// Removes all bars from the screen.
+    pub(crate) fn clear(&self) {
+        // A terminal that cannot be cleared is no reason to fail.
+        let _ = self.all.clear();
+    }
+}
+
+fn bar(progress: &Progress) -> ProgressBar {
+    let name = progress.stage.name();
+    let label = match progress.n_components {
+        1 => name.to_owned(),
+        n => format!("{name} ({} of {n})", progress.component + 1),
+    };
+    let bar = ProgressBar::new(FULL).with_prefix(label);
+    if let Ok(style) =
+        ProgressStyle::with_template("{prefix:<24} [{bar:40}] {percent:>3}% {elapsed}")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(REDRAW);
+    bar
+}

@@ -1,0 +1,127 @@
+//! Summaries for people.
+
+use crate::input::LoadedMesh;
+use crate::report::{Cost, cones_by_index, tau};
+use crate::text::{counted, figure, row};
+use seamstress::quality::Distortion;
+use seamstress::{ComponentStats, SeamlessMap};
+
+/// Name, size and topology of a mesh.
+pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
+    let facts = &mesh.facts;
+    let counts = [
+        counted(facts.n_vertices, "vertex"),
+        counted(facts.n_edges, "edge"),
+        counted(facts.n_faces, "triangle"),
+    ];
+    let genus = facts
+        .genus()
+        .map_or("genus undefined".into(), |g| format!("genus {g}"));
+    let boundary = match facts.boundary_loops() {
+        0 => "closed".into(),
+        n => counted(n, "boundary loop"),
+    };
+    let components = counted(facts.components.len(), "component");
+    let characteristic = facts.euler_characteristic();
+    let repaired = match mesh.repairs.len() {
+        0 => String::new(),
+        n => format!(", after {}", counted(n, "repair")),
+    };
+    let name = mesh.path.display();
+    vec![
+        row("mesh", &format!("{name} ({}){repaired}", mesh.format)),
+        row("size", &counts.join(", ")),
+        row(
+            "topology",
+            &format!("{components}, {genus}, {boundary}, Euler characteristic {characteristic}"),
+        ),
+    ]
+}
+
+/// Distortion, cones, seams and certificate of a map.
+pub(crate) fn map_rows(map: &SeamlessMap, distortion: &Distortion) -> Vec<String> {
+    let certificate = map.certificate();
+    let cones = cones_by_index(map.cones());
+    let by_index: Vec<String> = cones
+        .iter()
+        .map(|(index, count)| format!("{count} of index {index:+}"))
+        .collect();
+    let cones = match map.cones().len() {
+        0 => "none".into(),
+        n => format!("{n}: {}", by_index.join(", ")),
+    };
+    let mut rows = distortion_rows(distortion);
+    rows.extend([
+        row("cones", &cones),
+        row("seams", &counted(certificate.seam_edges, "edge")),
+        row(
+            "certificate",
+            &format!(
+                "passed: no flips, seams fit to {:.1e} mean edge lengths, angles to {:.1e} rad",
+                certificate.seam_residual, certificate.angle_error
+            ),
+        ),
+    ]);
+    rows
+}
+
+/// The distortion, in two rows.
+pub(crate) fn distortion_rows(distortion: &Distortion) -> Vec<String> {
+    let d = distortion;
+    if tau(d).is_nan() {
+        return vec![row("distortion", "undefined: no triangle has an area")];
+    }
+    let mut rows = vec![
+        row(
+            "distortion",
+            &format!(
+                "tau {}; per triangle: median {}, 95% {}, 99% {} (1 = isometry)",
+                figure(tau(d)),
+                figure(d.tau_t.p50),
+                figure(d.tau_t.p95),
+                figure(d.tau_t.p99)
+            ),
+        ),
+        row(
+            "energy",
+            &format!(
+                "symmetric Dirichlet {} (4 = isometry), ARAP {}",
+                figure(d.symmetric_dirichlet),
+                figure(d.arap)
+            ),
+        ),
+    ];
+    if d.degenerate > 0 {
+        let text = format!(
+            "{} without area left out of these figures",
+            counted(d.degenerate, "triangle")
+        );
+        rows.push(row("", &text));
+    }
+    rows
+}
+
+/// Time and memory, and the stages that took the most.
+pub(crate) fn cost_row(cost: &Cost, components: &[ComponentStats]) -> String {
+    let mut stages: Vec<(&'static str, f64)> = Vec::new();
+    for lap in components.iter().flat_map(|c| &c.stages) {
+        let name = lap.stage.name();
+        match stages.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, seconds)) => *seconds += lap.seconds,
+            None => stages.push((name, lap.seconds)),
+        }
+    }
+    let stages: Vec<String> = stages
+        .iter()
+        .map(|(name, seconds)| format!("{name} {seconds:.2}"))
+        .collect();
+    let mut text = format!("{:.2} s ({})", cost.wall_seconds, stages.join(", "));
+    text += &format!(", {}", counted(cost.threads, "thread"));
+    if let Some(cpu) = cost.cpu_seconds {
+        text += &format!(", {cpu:.2} s of CPU");
+    }
+    if let Some(bytes) = cost.peak_memory_bytes {
+        text += &format!(", {} MB", bytes.div_ceil(1_000_000));
+    }
+    row("time", &text)
+}

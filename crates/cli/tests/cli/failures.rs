@@ -1,0 +1,156 @@
+//! Exit codes, messages, and that a failure leaves nothing behind.
+
+use crate::harness::{Folder, wait};
+use seamstress_testkit as testkit;
+use std::time::{Duration, Instant};
+
+#[test]
+fn help_and_version() {
+    let folder = Folder::new();
+    for arguments in [&["--help"][..], &["map", "--help"], &["check", "--help"]] {
+        let run = folder.expect(0, arguments);
+        for text in ["Examples:", "Exit codes:"] {
+            assert!(run.stdout.contains(text), "{arguments:?}");
+        }
+    }
+    let version = folder.expect(0, &["--version"]).stdout;
+    assert_eq!(
+        version,
+        format!("seamstress {}\n", env!("CARGO_PKG_VERSION"))
+    );
+}
+
+#[test]
+fn unreadable_input_is_1() {
+    let folder = Folder::new();
+    folder.write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    for name in ["missing.obj", "broken.obj"] {
+        for arguments in [&["map", name, "-o", "a.obj"][..], &["check", name]] {
+            let run = folder.expect(1, arguments);
+            assert!(run.stderr.starts_with("error: "), "{run:?}");
+            assert!(run.stderr.contains(name), "{run:?}");
+        }
+    }
+    let run = folder.run(&["map", "broken.obj", "-o", "a.obj"]);
+    assert!(run.stderr.contains("line 2"), "{run:?}");
+    assert_eq!(folder.names(), ["broken.obj"]);
+}
+
+#[test]
+fn faults_are_1_and_name_elements() {
+    let folder = Folder::new();
+    let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    folder.write("fan.obj", fan);
+    for repair in [&[][..], &["--repair"]] {
+        let arguments = [&["map", "fan.obj", "-o", "a.obj"], repair].concat();
+        let run = folder.expect(1, &arguments);
+        assert!(run.stderr.starts_with("error: fan.obj: "), "{run:?}");
+        assert!(
+            run.stderr.contains("edge 0-1 has 3 faces: 0, 1, 2"),
+            "{run:?}"
+        );
+        assert!(run.stderr.contains("seamstress check fan.obj"), "{run:?}");
+    }
+    assert_eq!(folder.names(), ["fan.obj"]);
+}
+
+#[test]
+fn wrong_arguments_are_2() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    let wrong: [&[&str]; 14] = [
+        &[],
+        &["sew"],
+        &["map", "in.obj"],
+        &["map", "in.obj", "-o", "a.obj", "--threads", "0"],
+        &["map", "in.obj", "-o", "a.obj", "--time-limit", "0"],
+        &["map", "in.obj", "-o", "a.obj", "--time-limit", "soon"],
+        &["map", "in.obj", "-o", "a.obj", "--cone-bias", "nan"],
+        &["map", "in.obj", "-o", "in.obj"],
+        &["map", "in.obj", "-o", "./in.obj"],
+        &["map", "in.obj", "-o", "a.obj", "--report", "in.obj"],
+        &["map", "in.obj", "-o", "a.obj", "--report", "a.obj"],
+        &["map", "in.obj", "-o", "a.obj", "--cones", "./a.obj"],
+        &["map", "in.obj", "-o", "a.off"],
+        &["check", "in.obj", "--tolerance", "1"],
+    ];
+    let before = folder.read("in.obj");
+    for arguments in wrong {
+        folder.expect(2, arguments);
+    }
+    assert_eq!(folder.names(), ["in.obj"]);
+    assert_eq!(folder.read("in.obj"), before);
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_2_and_found_first() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
+    folder.write("file", "");
+    std::fs::create_dir(folder.path("folder.obj")).unwrap();
+    let wrong: [&[&str]; 5] = [
+        &["-o", "missing/a.obj"],
+        &["-o", "folder.obj"],
+        &["-o", "a.obj", "--report", "missing/r.json"],
+        &["-o", "a.obj", "--pictures", "file"],
+        &["-o", "a.obj", "--pictures", "file/deeper"],
+    ];
+    let start = Instant::now();
+    for arguments in wrong {
+        let run = folder.expect(2, &[&["map", "in.obj"], arguments].concat());
+        assert!(run.stderr.starts_with("error: cannot write "), "{run:?}");
+    }
+    assert!(start.elapsed() < Duration::from_secs(5));
+    assert_eq!(folder.names(), ["file", "folder.obj", "in.obj"]);
+}
+
+#[test]
+fn the_time_limit_is_4_and_leaves_nothing() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
+    for limit in ["0.01", "0.5"] {
+        let start = Instant::now();
+        let arguments = [
+            "map",
+            "in.obj",
+            "-o",
+            "a.obj",
+            "--pictures",
+            "new",
+            "--report",
+            "new/r.json",
+            "--time-limit",
+            limit,
+        ];
+        let run = folder.expect(4, &arguments);
+        assert!(run.stderr.starts_with("error: in.obj: stopped"), "{run:?}");
+        assert!(start.elapsed() < Duration::from_secs(10));
+        assert_eq!(folder.names(), ["in.obj"]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_is_4_and_leaves_nothing() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
+    let child = folder.start(&["map", "in.obj", "-o", "a.obj"]);
+    std::thread::sleep(Duration::from_millis(500));
+    let kill = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let run = wait(child);
+    assert_eq!(run.code, Some(4), "{run:?}");
+    assert!(run.stderr.contains("interrupted"), "{run:?}");
+    assert_eq!(folder.names(), ["in.obj"]);
+}
+
+#[test]
+fn a_failure_keeps_what_was_there() {
+    let folder = Folder::new();
+    folder.write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    folder.write("a.obj", "old");
+    folder.expect(1, &["map", "broken.obj", "-o", "a.obj"]);
+    assert_eq!(folder.read("a.obj"), "old");
+}

@@ -1,0 +1,8 @@
+//! The command as its users meet it: files in, files, messages and exit codes out.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod bad_meshes;
+mod check;
+mod failures;
+mod harness;
+mod map;

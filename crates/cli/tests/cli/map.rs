@@ -1,0 +1,187 @@
+//! Maps that succeed.
+
+use crate::harness::{Folder, bare_faces, lines_of, obj, off};
+use seamstress_testkit as testkit;
+use serde_json::Value;
+
+#[test]
+fn vertices_and_faces_stay_and_the_map_is_certified() {
+    let shapes = [
+        ("sphere", testkit::bumpy(&testkit::icosphere(2), 0.1, 1)),
+        ("torus", testkit::torus(16, 8, 1.0, 0.4)),
+        ("saddle", testkit::saddle(6)),
+        ("two", {
+            let pair = [testkit::cube(), testkit::icosphere(1)];
+            testkit::disjoint_union(&pair)
+        }),
+    ];
+    let folder = Folder::new();
+    for (name, soup) in shapes {
+        folder.write(&format!("{name}.off"), off(&soup));
+        let (input, output) = (format!("{name}.off"), format!("{name}.map.obj"));
+        let run = folder.expect(0, &["map", &input, "-o", &output]);
+        assert_eq!(run.stderr, "", "{name}");
+        assert!(run.stdout.lines().count() <= 15, "{}", run.stdout);
+        assert!(run.stdout.contains("certificate  passed"), "{}", run.stdout);
+        let (source, map) = (obj(&soup), folder.read(&output));
+        assert_eq!(positions(&map), soup.positions, "{name}");
+        assert_eq!(lines_of(&source, "f"), bare_faces(&map), "{name}");
+        assert!(map.starts_with("# Seamless map by Seamstress "));
+        assert!(map.contains(&format!("# Source: {name}.off\n")), "{name}");
+        let check = folder.expect(0, &["check", &input, &output]);
+        assert!(check.stdout.contains("certificate  passed"), "{name}");
+    }
+}
+
+fn positions(obj: &str) -> Vec<[f64; 3]> {
+    let point = |line: &str| {
+        let point: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        point.try_into().unwrap()
+    };
+    lines_of(obj, "v").into_iter().map(point).collect()
+}
+
+#[test]
+fn every_output_is_written_and_agrees() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::icosphere(2));
+    let arguments = [
+        "map",
+        "in.obj",
+        "-o",
+        "map.obj",
+        "--report",
+        "new/deep/r.json",
+        "--pictures",
+        "new/deep",
+        "--cones",
+        "cones.sing",
+        "--json",
+        "--threads",
+        "2",
+        "--cone-bias",
+        "0.25",
+    ];
+    let run = folder.expect(0, &arguments);
+    let expected = [
+        "cones.sing",
+        "in.obj",
+        "map.obj",
+        "new",
+        "new/deep",
+        "new/deep/back.png",
+        "new/deep/front.png",
+        "new/deep/layout.png",
+        "new/deep/r.json",
+    ];
+    assert_eq!(folder.names(), expected);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(run.stdout, folder.read("new/deep/r.json"));
+    assert_eq!(report["options"]["cone_bias"], 0.25);
+    assert_eq!(report["cost"]["threads"], 2);
+    assert_eq!(report["input"]["faces"], 320);
+    assert_eq!(report["input"]["genus"], 0);
+    assert_eq!(report["certificate"]["index_sum"], 8.0);
+    assert!(report["distortion"]["tau"].as_f64().unwrap() >= 1.0);
+    assert!(report["components"][0]["stages"][0]["seconds"].is_number());
+    let files = report["files"].as_array().unwrap();
+    assert_eq!(files.len(), 6);
+    for file in files {
+        assert!(folder.path(file["path"].as_str().unwrap()).is_file());
+    }
+    let cones = report["cones"]["list"].as_array().unwrap();
+    let mut expected = format!("4 {}\n", cones.len());
+    for cone in cones {
+        expected += &format!("{} {}\n", cone["vertex"], cone["index"]);
+    }
+    assert_eq!(folder.read("cones.sing"), expected);
+    let png = std::fs::read(folder.path("new/deep/front.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn the_bytes_depend_on_nothing_but_the_input() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::bumpy(&testkit::icosphere(3), 0.1, 3));
+    let runs = [("a", "1"), ("b", "2"), ("c", "2")];
+    for (name, threads) in runs {
+        let output = format!("{name}.obj");
+        let arguments = [
+            "map",
+            "in.obj",
+            "-o",
+            &output,
+            "--pictures",
+            name,
+            "--threads",
+            threads,
+        ];
+        folder.expect(0, &arguments);
+    }
+    let read =
+        |name: &str, file: &str| std::fs::read(folder.path(&format!("{name}{file}"))).unwrap();
+    for file in [".obj", "/front.png", "/back.png", "/layout.png"] {
+        assert_eq!(read("a", file), read("b", file), "{file}");
+        assert_eq!(read("b", file), read("c", file), "{file}");
+    }
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let folder = Folder::new();
+    folder.write("in.obj", format!("vn 0 0 1\n{}", obj(&testkit::cube())));
+    let run = folder.expect(0, &["map", "in.obj", "-o", "a.obj"]);
+    assert_eq!(run.stderr, "note: 1 vertex normal ignored\n");
+    let run = folder.expect(0, &["map", "in.obj", "-o", "a.obj", "--quiet"]);
+    assert_eq!((run.stdout, run.stderr), (String::new(), String::new()));
+}
+
+#[test]
+fn polygons_are_split_and_that_is_said() {
+    let folder = Folder::new();
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    folder.write("quads.obj", cube);
+    let run = folder.expect(0, &["map", "quads.obj", "-o", "map.obj"]);
+    assert_eq!(run.stderr, "note: 6 quads split into triangles\n");
+    let map = folder.read("map.obj");
+    assert_eq!(bare_faces(&map).len(), 12);
+    assert_eq!(bare_faces(&map)[..2], ["4 3 2", "4 2 1"]);
+    folder.expect(0, &["check", "quads.obj", "map.obj"]);
+}
+
+#[test]
+fn repairs_are_listed_and_the_map_is_of_the_repaired_mesh() {
+    let folder = Folder::new();
+    let mut soup = testkit::octahedron();
+    soup.faces[3].swap(0, 1);
+    soup.faces.push(soup.faces[0]);
+    soup.positions.push([9.0; 3]);
+    folder.write_obj("in.obj", &soup);
+    let refused = folder.expect(1, &["map", "in.obj", "-o", "map.obj"]);
+    assert!(
+        refused.stderr.contains("face 8 is a copy of face 0"),
+        "{refused:?}"
+    );
+    assert!(refused.stderr.contains("add `--repair`"), "{refused:?}");
+    let run = folder.expect(
+        0,
+        &[
+            "map", "in.obj", "-o", "map.obj", "--repair", "--report", "r.json",
+        ],
+    );
+    for line in [
+        "repair: dropped face 8, a copy of face 0",
+        "repair: turned over face 3",
+        "repair: dropped vertex 6 in no face",
+        "note: the map is of the repaired mesh",
+    ] {
+        assert!(run.stderr.contains(line), "{line} in {}", run.stderr);
+    }
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    assert_eq!(report["input"]["repairs"].as_array().unwrap().len(), 3);
+    let map = folder.read("map.obj");
+    assert_eq!((lines_of(&map, "v").len(), bare_faces(&map).len()), (6, 8));
+    folder.expect(1, &["check", "in.obj", "map.obj"]);
+    folder.expect(0, &["check", "in.obj", "map.obj", "--repair"]);
+}
