@@ -48,11 +48,7 @@ fn check_mesh(args: &CheckArgs, mesh: &LoadedMesh) -> Result<Status, Failure> {
         rows.push(row("verdict", &verdict(mesh)));
         text::print(&rows.join("\n"))?;
     }
-    Ok(if is_mesh {
-        Status::Done
-    } else {
-        Status::BadInput
-    })
+    Ok(if is_mesh { Status::Done } else { Status::BadInput })
 }
 
 fn shape_row(mesh: &LoadedMesh) -> Option<String> {
@@ -69,10 +65,7 @@ fn verdict(mesh: &LoadedMesh) -> String {
     let warnings = mesh.warnings().count();
     let mut text = match (mesh.errors().count(), mesh.is_repairable) {
         (0, _) => "a mesh that can be mapped".into(),
-        (n, true) => format!(
-            "not a mesh; `--repair` can mend its {}",
-            counted(n, "fault")
-        ),
+        (n, true) => format!("not a mesh; `--repair` can mend its {}", counted(n, "fault")),
         (n, false) => format!("not a mesh: {}", counted(n, "fault")),
     };
     if warnings > 0 {
@@ -110,11 +103,7 @@ fn check_map(args: &CheckArgs, mesh: &LoadedMesh, path: &Path) -> Result<Status,
         rows.extend(verdict.rows());
         text::print(&rows.join("\n"))?;
     }
-    Ok(if is_certified {
-        Status::Done
-    } else {
-        Status::BadInput
-    })
+    Ok(if is_certified { Status::Done } else { Status::BadInput })
 }
 
 /// A map as read: triangles with a UV per corner.
@@ -135,11 +124,8 @@ impl MapFile {
             }
             bad_map(path, &text)
         })?;
-        let faces: Option<Vec<[u32; 3]>> = read
-            .polygons
-            .iter()
-            .map(|polygon| <[u32; 3]>::try_from(polygon).ok())
-            .collect();
+        let faces: Option<Vec<[u32; 3]>> =
+            read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
         let Some(faces) = faces else {
             let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
             let text = format!(
@@ -148,29 +134,17 @@ impl MapFile {
             );
             return Err(bad_map(path, &text));
         };
-        Ok(Self {
-            soup: TriangleSoup {
-                positions: read.positions,
-                faces,
-            },
-            corner_uvs,
-        })
+        Ok(Self { soup: TriangleSoup { positions: read.positions, faces }, corner_uvs })
     }
 }
 
 fn bad_map(path: &Path, text: &str) -> Failure {
-    Failure::BadMap {
-        file: path.to_owned(),
-        text: text.to_owned(),
-    }
+    Failure::BadMap { file: path.to_owned(), text: text.to_owned() }
 }
 
 fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
     let uvs = read.corner_uvs.as_ref()?;
-    uvs.corners
-        .iter()
-        .map(|&corner| uvs.coordinates.get(corner as usize).copied())
-        .collect()
+    uvs.corners.iter().map(|&corner| uvs.coordinates.get(corner as usize).copied()).collect()
 }
 
 /// What is to say about a map.
@@ -186,15 +160,10 @@ fn judge(
     map: MapFile,
     tolerance: &Tolerance,
 ) -> Verdict {
-    let mut violations = compare_source(
-        (&mesh.positions, &mesh.faces),
-        (&map.soup.positions, &map.soup.faces),
-    );
+    let mut violations =
+        compare_source((&mesh.positions, &mesh.faces), (&map.soup.positions, &map.soup.faces));
     if mesh.faces != map.soup.faces {
-        return Verdict {
-            certified: Err(Violations(violations)),
-            distortion: None,
-        };
+        return Verdict { certified: Err(Violations(violations)), distortion: None };
     }
     let metric = Metric::from_positions(connectivity, &mesh.positions);
     let distortion = Some(distortion(connectivity, &metric, &map.corner_uvs));
@@ -206,10 +175,7 @@ fn judge(
             Err(Violations(violations))
         }
     };
-    Verdict {
-        certified,
-        distortion,
-    }
+    Verdict { certified, distortion }
 }
 
 impl Verdict {

@@ -62,12 +62,7 @@ impl LoadedMesh {
         let triangulation = soup::triangulate(&read.positions, read.polygons.iter());
         self.soup.positions = read.positions;
         match triangulation {
-            Ok(Triangulation {
-                faces,
-                polygon_of_face,
-                notes,
-                ..
-            }) => {
+            Ok(Triangulation { faces, polygon_of_face, notes, .. }) => {
                 self.notes.extend(triangulation_notes(&notes));
                 self.soup.faces = faces;
                 Some(polygon_of_face)
@@ -159,11 +154,8 @@ impl LoadedMesh {
 /// The faults of the file that repairs have left: those of the kinds that are still there. Other
 /// faults than those of the file are named as in the repaired mesh.
 fn as_in_file(before: Vec<Fault>, after: Vec<Fault>) -> impl Iterator<Item = Fault> {
-    let remains = |fault: &Fault| {
-        after
-            .iter()
-            .any(|left| discriminant(left) == discriminant(fault))
-    };
+    let remains =
+        |fault: &Fault| after.iter().any(|left| discriminant(left) == discriminant(fault));
     let kept: Vec<Fault> = before.into_iter().filter(remains).collect();
     kept.into_iter()
 }
@@ -176,9 +168,7 @@ fn triangulation_notes(notes: &TriangulationNotes) -> Vec<String> {
         (0, 0) => {}
         (_, 0) => lines.push(format!("{quads} split into triangles")),
         (0, _) => lines.push(format!("{larger} split into triangles")),
-        _ => lines.push(format!(
-            "{quads} and {larger} of more corners split into triangles"
-        )),
+        _ => lines.push(format!("{quads} and {larger} of more corners split into triangles")),
     }
     if let [first, ..] = notes.unresolved[..] {
         lines.push(format!(

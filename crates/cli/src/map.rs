@@ -38,11 +38,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Status, Failure> {
     set_threads(args.threads)?;
     let plan = Plan::new(args)?;
     let bars = Bars::new(!args.quiet);
-    let worker = Worker {
-        args: args.clone(),
-        stop: stop.clone(),
-        bars: bars.clone(),
-    };
+    let worker = Worker { args: args.clone(), stop: stop.clone(), bars: bars.clone() };
     let made = supervise(&stop, move || worker.make());
     bars.clear();
     let product = made.unwrap_or_else(|abandoned| Err(abandoned_failure(&args.mesh, abandoned)))?;
@@ -64,10 +60,7 @@ fn abandoned_failure(file: &Path, abandoned: Abandoned) -> Failure {
     let file = file.to_owned();
     match abandoned {
         Abandoned::Stopped(reason) => Failure::Stopped { file, reason },
-        Abandoned::Panicked => Failure::Internal {
-            file,
-            text: "the computation broke off".into(),
-        },
+        Abandoned::Panicked => Failure::Internal { file, text: "the computation broke off".into() },
     }
 }
 
@@ -85,10 +78,9 @@ impl Worker {
             tell_findings(&mesh);
         }
         mesh.require_mesh()?;
-        let connectivity = TriMesh::from_faces(mesh.soup.positions.len(), &mesh.soup.faces)
-            .map_err(|error| Failure::BadMesh {
-                file: mesh.path.clone(),
-                text: error.to_string(),
+        let connectivity =
+            TriMesh::from_faces(mesh.soup.positions.len(), &mesh.soup.faces).map_err(|error| {
+                Failure::BadMesh { file: mesh.path.clone(), text: error.to_string() }
             })?;
         let solution = self.solve(&mesh, &connectivity)?;
         self.stop.lift_limit();
@@ -96,15 +88,10 @@ impl Worker {
             Some(_) => Some(pictures::draw(&mesh.soup, &solution.map)),
             None => None,
         };
-        let pictures = pictures.transpose().map_err(|cause| Failure::NoPicture {
-            file: mesh.path.clone(),
-            cause,
-        })?;
-        Ok(Product {
-            mesh,
-            solution,
-            pictures,
-        })
+        let pictures = pictures
+            .transpose()
+            .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
+        Ok(Product { mesh, solution, pictures })
     }
 
     fn solve(&mut self, mesh: &LoadedMesh, connectivity: &TriMesh) -> Result<MapSolution, Failure> {
@@ -243,12 +230,8 @@ fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
     rows.extend(summary::map_rows(&solution.map, &solution.distortion));
     rows.push(summary::cost_row(cost, &solution.components));
-    let names: Vec<String> = plan
-        .targets
-        .iter()
-        .rev()
-        .map(|target| target.path.display().to_string())
-        .collect();
+    let names: Vec<String> =
+        plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
     rows.push(row("written", &names.join(", ")));
     rows.join("\n")
 }

@@ -59,10 +59,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Unwritable(#[from] WriteError),
     #[error("cannot write {}: {cause}", path.display())]
-    Output {
-        path: PathBuf,
-        cause: std::io::Error,
-    },
+    Output { path: PathBuf, cause: std::io::Error },
     #[error(
         "{}: no certified map could be made: {cause}. Nothing was written.\n\
          This is a limit of the method: try another `--cone-bias`, or remesh triangles that are very \
@@ -73,10 +70,7 @@ pub(crate) enum Failure {
     #[error("{}: stopped: {reason}. Nothing was written", file.display())]
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
-    NoPicture {
-        file: PathBuf,
-        cause: seamstress_render::RenderError,
-    },
+    NoPicture { file: PathBuf, cause: seamstress_render::RenderError },
     /// A bug of ours.
     #[error("{}: internal error: {text}. Nothing was written. Please report this with the mesh", file.display())]
     Internal { file: PathBuf, text: String },

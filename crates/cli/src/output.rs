@@ -61,10 +61,7 @@ impl Plan {
             add(Kind::Report, path);
         }
         add(Kind::Map, &args.output);
-        let plan = Self {
-            targets,
-            folder: args.pictures.clone(),
-        };
+        let plan = Self { targets, folder: args.pictures.clone() };
         refuse_other_formats(&args.output)?;
         plan.refuse_clashes(&args.mesh)?;
         plan.probe()?;
@@ -151,10 +148,7 @@ fn parent(path: &Path) -> &Path {
 
 /// The folders that are missing on the way to one, innermost first.
 fn missing(folder: &Path) -> Vec<&Path> {
-    folder
-        .ancestors()
-        .take_while(|path| !path.as_os_str().is_empty() && !path.exists())
-        .collect()
+    folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect()
 }
 
 /// Files being written. Without a commit nothing stays.
@@ -169,10 +163,8 @@ pub(crate) struct Batch {
 impl Batch {
     fn make(&mut self, folder: &Path) -> Result<(), Failure> {
         for path in missing(folder).into_iter().rev() {
-            fs::create_dir(path).map_err(|cause| Failure::Output {
-                path: path.to_owned(),
-                cause,
-            })?;
+            fs::create_dir(path)
+                .map_err(|cause| Failure::Output { path: path.to_owned(), cause })?;
             self.made_folders.push(path.to_owned());
         }
         Ok(())

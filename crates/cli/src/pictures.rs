@@ -22,10 +22,7 @@ pub(crate) fn draw(soup: &TriangleSoup, map: &SeamlessMap) -> Result<[Vec<u8>; 3
         features: &[],
     };
     let surface = |view| {
-        let options = SurfaceOptions {
-            view,
-            ..SurfaceOptions::default()
-        };
+        let options = SurfaceOptions { view, ..SurfaceOptions::default() };
         render_surface(&scene, &options)
     };
     let images = [

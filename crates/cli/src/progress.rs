@@ -24,10 +24,7 @@ impl Bars {
         } else {
             ProgressDrawTarget::hidden()
         };
-        Self {
-            all: MultiProgress::with_draw_target(target),
-            current: None,
-        }
+        Self { all: MultiProgress::with_draw_target(target), current: None }
     }
 
     /// Shows where the work stands.

@@ -114,11 +114,7 @@ fn certificate_json(certificate: &Certificate) -> Value {
 pub(crate) fn distortion_json(distortion: &Distortion) -> Value {
     let mut value = serde_json::to_value(distortion).unwrap_or_default();
     // Means and percentiles over no triangle at all are undefined.
-    let missing = if distortion.measured == 0 {
-        "nan"
-    } else {
-        "inf"
-    };
+    let missing = if distortion.measured == 0 { "nan" } else { "inf" };
     spell_out(&mut value, missing);
     if let Value::Object(fields) = &mut value {
         fields.insert("tau".into(), number(tau(distortion)));

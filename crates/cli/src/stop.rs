@@ -31,12 +31,7 @@ impl Stop {
         let _ = ctrlc::set_handler(move || {
             count.fetch_add(1, Ordering::Relaxed);
         });
-        Self {
-            start: Instant::now(),
-            limit,
-            limit_lifted: Arc::default(),
-            interrupts,
-        }
+        Self { start: Instant::now(), limit, limit_lifted: Arc::default(), interrupts }
     }
 
     /// Time since the start.

@@ -14,9 +14,7 @@ pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
         counted(facts.n_edges, "edge"),
         counted(facts.n_faces, "triangle"),
     ];
-    let genus = facts
-        .genus()
-        .map_or("genus undefined".into(), |g| format!("genus {g}"));
+    let genus = facts.genus().map_or("genus undefined".into(), |g| format!("genus {g}"));
     let boundary = match facts.boundary_loops() {
         0 => "closed".into(),
         n => counted(n, "boundary loop"),
@@ -42,10 +40,8 @@ pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
 pub(crate) fn map_rows(map: &SeamlessMap, distortion: &Distortion) -> Vec<String> {
     let certificate = map.certificate();
     let cones = cones_by_index(map.cones());
-    let by_index: Vec<String> = cones
-        .iter()
-        .map(|(index, count)| format!("{count} of index {index:+}"))
-        .collect();
+    let by_index: Vec<String> =
+        cones.iter().map(|(index, count)| format!("{count} of index {index:+}")).collect();
     let cones = match map.cones().len() {
         0 => "none".into(),
         n => format!("{n}: {}", by_index.join(", ")),
@@ -92,10 +88,8 @@ pub(crate) fn distortion_rows(distortion: &Distortion) -> Vec<String> {
         ),
     ];
     if d.degenerate > 0 {
-        let text = format!(
-            "{} without area left out of these figures",
-            counted(d.degenerate, "triangle")
-        );
+        let text =
+            format!("{} without area left out of these figures", counted(d.degenerate, "triangle"));
         rows.push(row("", &text));
     }
     rows
@@ -111,10 +105,8 @@ pub(crate) fn cost_row(cost: &Cost, components: &[ComponentStats]) -> String {
             None => stages.push((name, lap.seconds)),
         }
     }
-    let stages: Vec<String> = stages
-        .iter()
-        .map(|(name, seconds)| format!("{name} {seconds:.2}"))
-        .collect();
+    let stages: Vec<String> =
+        stages.iter().map(|(name, seconds)| format!("{name} {seconds:.2}")).collect();
     let mut text = format!("{:.2} s ({})", cost.wall_seconds, stages.join(", "));
     text += &format!(", {}", counted(cost.threads, "thread"));
     if let Some(cpu) = cost.cpu_seconds {

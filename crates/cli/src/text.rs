@@ -8,10 +8,9 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let written = writeln!(out, "{text}").and_then(|()| out.flush());
     match written {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(Failure::Output {
-            path: "to standard output".into(),
-            cause,
-        }),
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Output { path: "to standard output".into(), cause })
+        }
         _ => Ok(()),
     }
 }

@@ -19,10 +19,7 @@ pub struct WriteError {
 
 impl WriteError {
     fn new(path: &Path, cause: io::Error) -> Self {
-        Self {
-            path: path.to_owned(),
-            cause,
-        }
+        Self { path: path.to_owned(), cause }
     }
 }
 
@@ -47,10 +44,7 @@ impl AtomicFile {
         let fail = |cause| WriteError::new(path, cause);
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let existing = fs::metadata(&target).ok();
-        if existing
-            .as_ref()
-            .is_some_and(|existing| !existing.is_file())
-        {
+        if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
             return Err(fail(io::Error::new(
                 io::ErrorKind::InvalidInput,
                 "it is not a regular file",
@@ -74,19 +68,11 @@ impl AtomicFile {
             // As for any new file; the process's mask applies.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let file = builder
-            .tempfile_in(directory)
-            .map_err(|error| fail(without_path(error)))?;
+        let file = builder.tempfile_in(directory).map_err(|error| fail(without_path(error)))?;
         if let Some(existing) = existing {
-            file.as_file()
-                .set_permissions(existing.permissions())
-                .map_err(fail)?;
+            file.as_file().set_permissions(existing.permissions()).map_err(fail)?;
         }
-        Ok(Self {
-            path: path.to_owned(),
-            target,
-            file: BufWriter::with_capacity(1 << 16, file),
-        })
+        Ok(Self { path: path.to_owned(), target, file: BufWriter::with_capacity(1 << 16, file) })
     }
 
     /// The path the file will have.
@@ -101,19 +87,13 @@ impl AtomicFile {
     /// If the last data cannot be written or the file cannot be renamed; nothing is left behind then.
     pub fn commit(self) -> Result<(), WriteError> {
         let Self { path, target, file } = self;
-        let file = file
-            .into_inner()
-            .map_err(|error| WriteError::new(&path, error.into_error()))?;
-        file.persist(target)
-            .map_err(|error| WriteError::new(&path, error.error))?;
+        let file = file.into_inner().map_err(|error| WriteError::new(&path, error.into_error()))?;
+        file.persist(target).map_err(|error| WriteError::new(&path, error.error))?;
         Ok(())
     }
 
     fn named(&self, error: &io::Error) -> io::Error {
-        io::Error::new(
-            error.kind(),
-            format!("cannot write {}: {error}", self.path.display()),
-        )
+        io::Error::new(error.kind(), format!("cannot write {}: {error}", self.path.display()))
     }
 }
 
@@ -175,14 +155,9 @@ mod tests {
         let message = AtomicFile::create(&path).unwrap_err().to_string();
         assert_eq!(
             message,
-            format!(
-                "cannot write {}: the directory does not exist",
-                path.display()
-            )
+            format!("cannot write {}: the directory does not exist", path.display())
         );
-        let message = AtomicFile::create(directory.path())
-            .unwrap_err()
-            .to_string();
+        let message = AtomicFile::create(directory.path()).unwrap_err().to_string();
         assert!(message.ends_with("it is not a regular file"), "{message}");
         assert_eq!(entries(directory.path()), 0);
     }
@@ -192,19 +167,13 @@ mod tests {
     fn links_are_followed_and_permissions_kept() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let directory = tempfile::tempdir().unwrap();
-        let (path, link) = (
-            directory.path().join("map.obj"),
-            directory.path().join("link.obj"),
-        );
+        let (path, link) = (directory.path().join("map.obj"), directory.path().join("link.obj"));
         fs::write(&path, "old").unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         symlink(&path, &link).unwrap();
         AtomicFile::create(&link).unwrap().commit().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"");
-        assert_eq!(
-            fs::metadata(&path).unwrap().permissions().mode() & 0o777,
-            0o640
-        );
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
 }

@@ -157,11 +157,9 @@ impl fmt::Display for Missing {
         match self {
             Self::Content => f.write_str("the file is empty"),
             Self::Vertices => f.write_str("the file has no vertices"),
-            Self::Faces { vertices } => write!(
-                f,
-                "the file has {} but no faces",
-                Count(*vertices, "vertex")
-            ),
+            Self::Faces { vertices } => {
+                write!(f, "the file has {} but no faces", Count(*vertices, "vertex"))
+            }
         }
     }
 }
@@ -194,15 +192,7 @@ impl fmt::Display for Range<'_> {
             (0, _) => write!(f, "the file has {count}, counted from 0"),
             (_, "0") => f.write_str("OBJ counts from 1"),
             (_, index) if index.starts_with('-') => {
-                write!(
-                    f,
-                    "{count} {} it",
-                    if self.count == 1 {
-                        "precedes"
-                    } else {
-                        "precede"
-                    }
-                )
+                write!(f, "{count} {} it", if self.count == 1 { "precedes" } else { "precede" })
             }
             _ => write!(f, "the file has {count}"),
         }
@@ -222,18 +212,12 @@ pub(crate) type Parsed<T> = Result<T, Fault>;
 impl Fault {
     #[cold]
     pub(crate) fn at(position: Position, kind: ReadErrorKind) -> Self {
-        Self {
-            position: Some(position),
-            kind,
-        }
+        Self { position: Some(position), kind }
     }
 
     #[cold]
     pub(crate) fn whole_file(kind: ReadErrorKind) -> Self {
-        Self {
-            position: None,
-            kind,
-        }
+        Self { position: None, kind }
     }
 
     #[cold]
@@ -242,39 +226,21 @@ impl Fault {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> Self {
-        Self::at(
-            position,
-            ReadErrorKind::Syntax {
-                expected: expected.into(),
-                found: found.into(),
-            },
-        )
+        Self::at(position, ReadErrorKind::Syntax { expected: expected.into(), found: found.into() })
     }
 
     #[cold]
     pub(crate) fn truncated(position: Position, expected: impl Into<String>) -> Self {
-        Self::at(
-            position,
-            ReadErrorKind::Truncated {
-                expected: expected.into(),
-            },
-        )
+        Self::at(position, ReadErrorKind::Truncated { expected: expected.into() })
     }
 
     #[cold]
     pub(crate) fn unsupported(position: Option<Position>, what: impl Into<String>) -> Self {
-        Self {
-            position,
-            kind: ReadErrorKind::Unsupported { what: what.into() },
-        }
+        Self { position, kind: ReadErrorKind::Unsupported { what: what.into() } }
     }
 
     pub(crate) fn named(self, name: &str) -> ReadError {
-        ReadError {
-            name: name.to_owned(),
-            position: self.position,
-            kind: self.kind,
-        }
+        ReadError { name: name.to_owned(), position: self.position, kind: self.kind }
     }
 }
 
@@ -295,10 +261,7 @@ mod tests {
     fn messages_name_file_and_place() {
         let fault = Fault::syntax(Position::Line(7), "a number", "`abc`");
         let error = fault.named("a.obj");
-        assert_eq!(
-            error.to_string(),
-            "a.obj, line 7: expected a number, found `abc`"
-        );
+        assert_eq!(error.to_string(), "a.obj, line 7: expected a number, found `abc`");
         assert_eq!((error.line(), error.byte()), (Some(7), None));
         let error = Fault::truncated(Position::Byte(84), "2 facets, found 0").named("a.stl");
         assert_eq!(
@@ -308,10 +271,7 @@ mod tests {
         assert_eq!((error.line(), error.byte()), (None, Some(84)));
         let error =
             Fault::whole_file(ReadErrorKind::Empty(Missing::Faces { vertices: 1 })).named("p.ply");
-        assert_eq!(
-            error.to_string(),
-            "p.ply: the file has 1 vertex but no faces"
-        );
+        assert_eq!(error.to_string(), "p.ply: the file has 1 vertex but no faces");
     }
 
     #[test]

@@ -23,12 +23,8 @@ impl Format {
     /// The format of a file name extension (without its dot, in any case).
     #[must_use]
     pub fn from_extension(extension: &str) -> Option<Self> {
-        let known = [
-            ("obj", Self::Obj),
-            ("off", Self::Off),
-            ("ply", Self::Ply),
-            ("stl", Self::Stl),
-        ];
+        let known =
+            [("obj", Self::Obj), ("off", Self::Off), ("ply", Self::Ply), ("stl", Self::Stl)];
         known
             .into_iter()
             .find(|(name, _)| extension.eq_ignore_ascii_case(name))
@@ -104,24 +100,12 @@ mod tests {
 
     #[test]
     fn content_tells_the_format() {
-        assert_eq!(
-            Format::detect(b"# made by hand\n\nv 0 0 0"),
-            Some(Format::Obj)
-        );
+        assert_eq!(Format::detect(b"# made by hand\n\nv 0 0 0"), Some(Format::Obj));
         assert_eq!(Format::detect(b"mtllib a.mtl"), Some(Format::Obj));
-        assert_eq!(
-            Format::detect(b"\xef\xbb\xbf  COFF\n3 1 0"),
-            Some(Format::Off)
-        );
+        assert_eq!(Format::detect(b"\xef\xbb\xbf  COFF\n3 1 0"), Some(Format::Off));
         assert_eq!(Format::detect(b"8 6 12\n0 0 0"), Some(Format::Off));
-        assert_eq!(
-            Format::detect(b"ply\r\nformat ascii 1.0"),
-            Some(Format::Ply)
-        );
-        assert_eq!(
-            Format::detect(b"solid a\n facet normal 0 0 1"),
-            Some(Format::Stl)
-        );
+        assert_eq!(Format::detect(b"ply\r\nformat ascii 1.0"), Some(Format::Ply));
+        assert_eq!(Format::detect(b"solid a\n facet normal 0 0 1"), Some(Format::Stl));
         assert_eq!(Format::detect(b"lorem ipsum"), None);
         assert_eq!(Format::detect(b"1 2 3 4"), None);
         assert_eq!(Format::detect(b""), None);

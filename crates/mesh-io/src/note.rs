@@ -94,10 +94,7 @@ impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ExtensionContradicted { claimed, found } => {
-                write!(
-                    f,
-                    "the name says {claimed}, but the content is {found}; read as {found}"
-                )
+                write!(f, "the name says {claimed}, but the content is {found}; read as {found}")
             }
             Self::VerticesWelded { before, after } => {
                 write!(
@@ -107,11 +104,7 @@ impl fmt::Display for Note {
                 )
             }
             Self::DegenerateFacets { count } => {
-                write!(
-                    f,
-                    "{} with a repeated vertex after welding",
-                    Count(*count, "facet")
-                )
+                write!(f, "{} with a repeated vertex after welding", Count(*count, "facet"))
             }
             Self::VertexColumnsIgnored { count } => write!(
                 f,
@@ -125,11 +118,7 @@ impl fmt::Display for Note {
                 write!(f, "{} ignored", Count(*count, "vertex normal"))
             }
             Self::TextureCoordinatesUnused { count } => {
-                write!(
-                    f,
-                    "{} ignored: no face uses them",
-                    Count(*count, "texture coordinate")
-                )
+                write!(f, "{} ignored: no face uses them", Count(*count, "texture coordinate"))
             }
             Self::TextureCoordinatesIncomplete { without, corners } => {
                 write!(
@@ -138,10 +127,7 @@ impl fmt::Display for Note {
                 )
             }
             Self::TextureCoordinatesNotFinite { line } => {
-                write!(
-                    f,
-                    "texture coordinates ignored: line {line} has one that is not finite"
-                )
+                write!(f, "texture coordinates ignored: line {line} has one that is not finite")
             }
             Self::PropertiesIgnored { element, names } => {
                 const SHOWN: usize = 12;
@@ -153,11 +139,7 @@ impl fmt::Display for Note {
                 }
             }
             Self::ElementsIgnored { kind, count } => write!(f, "{} ignored", Count(*count, kind)),
-            Self::UnknownKeywords {
-                count,
-                first_line,
-                keyword,
-            } => write!(
+            Self::UnknownKeywords { count, first_line, keyword } => write!(
                 f,
                 "{} with an unknown keyword ignored, the first is {keyword} in line {first_line}",
                 Count(*count, "line")
@@ -175,31 +157,14 @@ mod tests {
 
     #[test]
     fn notes_are_sentences() {
-        let note = Note::ExtensionContradicted {
-            claimed: Format::Off,
-            found: Format::Obj,
-        };
-        assert_eq!(
-            note.to_string(),
-            "the name says OFF, but the content is OBJ; read as OBJ"
-        );
-        let note = Note::VerticesWelded {
-            before: 576,
-            after: 96,
-        };
-        assert_eq!(
-            note.to_string(),
-            "576 facet corners welded by exact position into 96 vertices"
-        );
-        let note = Note::PropertiesIgnored {
-            element: "vertex".into(),
-            names: vec!["red".into(); 20],
-        };
+        let note = Note::ExtensionContradicted { claimed: Format::Off, found: Format::Obj };
+        assert_eq!(note.to_string(), "the name says OFF, but the content is OBJ; read as OBJ");
+        let note = Note::VerticesWelded { before: 576, after: 96 };
+        assert_eq!(note.to_string(), "576 facet corners welded by exact position into 96 vertices");
+        let note =
+            Note::PropertiesIgnored { element: "vertex".into(), names: vec!["red".into(); 20] };
         assert!(note.to_string().ends_with("red, red and 8 more"), "{note}");
-        let note = Note::ElementsIgnored {
-            kind: "point".into(),
-            count: 1,
-        };
+        let note = Note::ElementsIgnored { kind: "point".into(), count: 1 };
         assert_eq!(note.to_string(), "1 point ignored");
     }
 }

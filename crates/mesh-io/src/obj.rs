@@ -167,10 +167,7 @@ impl<'a> Reader<'a> {
         }
         if self.polygon.len() < 3 {
             let found = self.polygon.len();
-            return Err(Fault::at(
-                Position::Line(line),
-                ReadErrorKind::TooFewCorners { found },
-            ));
+            return Err(Fault::at(Position::Line(line), ReadErrorKind::TooFewCorners { found }));
         }
         self.mesh.polygons.push(&self.polygon);
         Ok(())
@@ -198,16 +195,10 @@ impl<'a> Reader<'a> {
 
     fn unknown(&mut self, keyword: &[u8], line: usize) -> Parsed<()> {
         if keyword.iter().any(u8::is_ascii_control) {
-            return Err(Fault::syntax(
-                Position::Line(line),
-                "an OBJ statement",
-                quote(keyword),
-            ));
+            return Err(Fault::syntax(Position::Line(line), "an OBJ statement", quote(keyword)));
         }
         self.left_out.unknown += 1;
-        self.left_out
-            .first_unknown
-            .get_or_insert_with(|| (line, quote(keyword)));
+        self.left_out.first_unknown.get_or_insert_with(|| (line, quote(keyword)));
         Ok(())
     }
 
@@ -240,18 +231,10 @@ impl<'a> Reader<'a> {
     /// Keeps the texture coordinates if every corner has one.
     fn keep_uvs(&mut self) -> Parsed<()> {
         let count = self.uvs.coordinates.len();
-        let without = self
-            .uvs
-            .corners
-            .iter()
-            .filter(|&&corner| corner == NO_UV)
-            .count();
+        let without = self.uvs.corners.iter().filter(|&&corner| corner == NO_UV).count();
         let corners = self.uvs.corners.len();
         if count == 0 {
-            let note = Note::TextureCoordinatesIncomplete {
-                without: corners,
-                corners,
-            };
+            let note = Note::TextureCoordinatesIncomplete { without: corners, corners };
             let named = self.dangling_uvs > 0 || without < corners;
             self.mesh.notes.extend(named.then_some(note));
             return Ok(());
@@ -275,32 +258,20 @@ impl<'a> Reader<'a> {
         let left_out = std::mem::take(&mut self.left_out);
         let notes = &mut self.mesh.notes;
         if left_out.vertex_columns > 0 {
-            notes.push(Note::VertexColumnsIgnored {
-                count: left_out.vertex_columns,
-            });
+            notes.push(Note::VertexColumnsIgnored { count: left_out.vertex_columns });
         }
         if left_out.normals > 0 {
-            notes.push(Note::NormalsIgnored {
-                count: left_out.normals,
-            });
+            notes.push(Note::NormalsIgnored { count: left_out.normals });
         }
-        for (kind, count) in [
-            ("point", left_out.points),
-            ("free-form curve or surface", left_out.free_form),
-        ] {
+        for (kind, count) in
+            [("point", left_out.points), ("free-form curve or surface", left_out.free_form)]
+        {
             if count > 0 {
-                notes.push(Note::ElementsIgnored {
-                    kind: kind.to_owned(),
-                    count,
-                });
+                notes.push(Note::ElementsIgnored { kind: kind.to_owned(), count });
             }
         }
         if let Some((first_line, keyword)) = left_out.first_unknown {
-            notes.push(Note::UnknownKeywords {
-                count: left_out.unknown,
-                first_line,
-                keyword,
-            });
+            notes.push(Note::UnknownKeywords { count: left_out.unknown, first_line, keyword });
         }
     }
 }

@@ -13,11 +13,7 @@ pub(crate) struct Corner {
 impl Corner {
     pub(crate) fn parse(token: &[u8], position: Position) -> Parsed<Self> {
         Self::read(token).ok_or_else(|| {
-            Fault::syntax(
-                position,
-                "a face corner such as `3`, `3/1` or `3/1/2`",
-                quote(token),
-            )
+            Fault::syntax(position, "a face corner such as `3`, `3/1` or `3/1/2`", quote(token))
         })
     }
 
@@ -55,10 +51,7 @@ struct Forward<'a> {
 
 impl<'a> References<'a> {
     pub(crate) fn new(what: &'static str) -> Self {
-        Self {
-            what,
-            forward: Vec::new(),
-        }
+        Self { what, forward: Vec::new() }
     }
 
     /// The position that `index`, found in `corner`, refers to while the list holds `count` elements.
@@ -70,20 +63,12 @@ impl<'a> References<'a> {
         position: Position,
     ) -> Parsed<u32> {
         let size = i64::try_from(count).unwrap_or(i64::MAX);
-        let target = if index < 0 {
-            size.saturating_add(index)
-        } else {
-            index - 1
-        };
+        let target = if index < 0 { size.saturating_add(index) } else { index - 1 };
         if target < 0 {
             return Err(self.out_of_range(index, corner, count, position));
         }
         if target >= size {
-            self.forward.push(Forward {
-                index,
-                corner,
-                position,
-            });
+            self.forward.push(Forward { index, corner, position });
         }
         // A position beyond 32 bits is a forward reference that the check will refuse.
         Ok(u32::try_from(target).unwrap_or(u32::MAX))
@@ -103,18 +88,12 @@ impl<'a> References<'a> {
     #[cold]
     fn out_of_range(&self, index: i64, corner: &[u8], count: usize, position: Position) -> Fault {
         // Show the digits of the file: a huge index was clamped.
-        let written = corner
-            .split(|&byte| byte == b'/')
-            .find(|part| parse_integer(part) == Some(index));
+        let written =
+            corner.split(|&byte| byte == b'/').find(|part| parse_integer(part) == Some(index));
         let index = written.map_or_else(|| index.to_string(), |part| quote(part).replace('`', ""));
         Fault::at(
             position,
-            ReadErrorKind::IndexOutOfRange {
-                what: self.what,
-                index,
-                count,
-                base: 1,
-            },
+            ReadErrorKind::IndexOutOfRange { what: self.what, index, count, base: 1 },
         )
     }
 }
@@ -127,28 +106,10 @@ mod tests {
 
     #[test]
     fn corners() {
-        assert_eq!(
-            Corner::read(b"3"),
-            Some(Corner {
-                vertex: 3,
-                uv: None
-            })
-        );
+        assert_eq!(Corner::read(b"3"), Some(Corner { vertex: 3, uv: None }));
         assert_eq!(Corner::read(b"3/-1/x"), None);
-        assert_eq!(
-            Corner::read(b"3/-1/2"),
-            Some(Corner {
-                vertex: 3,
-                uv: Some(-1)
-            })
-        );
-        assert_eq!(
-            Corner::read(b"3//2"),
-            Some(Corner {
-                vertex: 3,
-                uv: None
-            })
-        );
+        assert_eq!(Corner::read(b"3/-1/2"), Some(Corner { vertex: 3, uv: Some(-1) }));
+        assert_eq!(Corner::read(b"3//2"), Some(Corner { vertex: 3, uv: None }));
         assert_eq!(Corner::read(b"/1"), None);
     }
 

@@ -18,23 +18,17 @@ impl Header {
     pub(crate) fn parse(token: &[u8]) -> Option<Self> {
         let mut rest = token;
         let mut other_dimension = false;
-        for (prefix, dimension) in [
-            (&b"ST"[..], false),
-            (b"C", false),
-            (b"N", false),
-            (b"4", true),
-            (b"n", true),
-        ] {
+        for (prefix, dimension) in
+            [(&b"ST"[..], false), (b"C", false), (b"N", false), (b"4", true), (b"n", true)]
+        {
             if let Some(stripped) = rest.strip_prefix(prefix) {
                 rest = stripped;
                 other_dimension |= dimension;
             }
         }
         let rest = rest.strip_prefix(b"OFF")?;
-        (rest.is_empty() || parse_integer(rest).is_some()).then_some(Self {
-            other_dimension,
-            rest: rest.len(),
-        })
+        (rest.is_empty() || parse_integer(rest).is_some())
+            .then_some(Self { other_dimension, rest: rest.len() })
     }
 }
 
@@ -64,10 +58,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
             Count(mesh.positions.len(), "vertex"),
             Count(mesh.polygons.len(), "face")
         );
-        return Err(Fault::at(
-            text.here(),
-            ReadErrorKind::CountMismatch { announced, found },
-        ));
+        return Err(Fault::at(text.here(), ReadErrorKind::CountMismatch { announced, found }));
     }
     Ok(mesh)
 }
@@ -110,11 +101,7 @@ fn counts(text: &mut Text<'_>) -> Parsed<Counts> {
     let faces = count(text, "the number of faces")?;
     if let Some(edges) = text.token() {
         if parse_integer(edges).is_none() {
-            return Err(Fault::syntax(
-                text.here(),
-                "the number of edges",
-                quote(edges),
-            ));
+            return Err(Fault::syntax(text.here(), "the number of edges", quote(edges)));
         }
         if let Some(extra) = text.token() {
             return Err(Fault::syntax(
@@ -127,9 +114,7 @@ fn counts(text: &mut Text<'_>) -> Parsed<Counts> {
     text.next_line();
     let missing = match (vertices, faces) {
         (0, _) => Missing::Vertices,
-        (_, 0) => Missing::Faces {
-            vertices: usize::try_from(vertices).unwrap_or(usize::MAX),
-        },
+        (_, 0) => Missing::Faces { vertices: usize::try_from(vertices).unwrap_or(usize::MAX) },
         _ => return Ok(Counts { vertices, faces }),
     };
     Err(Fault::whole_file(ReadErrorKind::Empty(missing)))
@@ -190,10 +175,7 @@ fn faces(text: &mut Text<'_>, counts: Counts, mesh: &mut PolygonMesh) -> Parsed<
         let corners = count(text, "the number of corners of a face")?;
         if corners < 3 {
             let found = usize::try_from(corners).unwrap_or_default();
-            return Err(Fault::at(
-                Position::Line(start),
-                ReadErrorKind::TooFewCorners { found },
-            ));
+            return Err(Fault::at(Position::Line(start), ReadErrorKind::TooFewCorners { found }));
         }
         polygon.clear();
         for _ in 0..corners {
@@ -227,12 +209,8 @@ fn vertex_index(text: &mut Text<'_>, vertices: usize) -> Parsed<u32> {
         Ok(vertex) if (vertex as usize) < vertices => Ok(vertex),
         _ => {
             let index = quote(token).replace('`', "");
-            let kind = ReadErrorKind::IndexOutOfRange {
-                what: "vertex",
-                index,
-                count: vertices,
-                base: 0,
-            };
+            let kind =
+                ReadErrorKind::IndexOutOfRange { what: "vertex", index, count: vertices, base: 0 };
             Err(Fault::at(text.here(), kind))
         }
     }
@@ -240,10 +218,7 @@ fn vertex_index(text: &mut Text<'_>, vertices: usize) -> Parsed<u32> {
 
 #[cold]
 fn ends_early(text: &Text<'_>, announced: i64, what: &str, read: i64) -> Fault {
-    Fault::truncated(
-        text.last_line(),
-        format!("{announced} {what}, found {read}"),
-    )
+    Fault::truncated(text.last_line(), format!("{announced} {what}, found {read}"))
 }
 
 /// An element went on into the next line and ended in its middle: its count or its line is wrong.

@@ -18,10 +18,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
             refuse_nul(bytes)?;
             read(&header, &mut Ascii::new(header.data.clone()))
         }
-        Encoding::Binary(order) => read(
-            &header,
-            &mut Binary::new(bytes, header.data.offset(), order),
-        ),
+        Encoding::Binary(order) => {
+            read(&header, &mut Binary::new(bytes, header.data.offset(), order))
+        }
     }
 }
 
@@ -43,9 +42,7 @@ fn check_contents(header: &Header<'_>) -> Parsed<()> {
             return Err(Fault::unsupported(None, what));
         }
         let vertices = usize::try_from(vertices).unwrap_or(usize::MAX);
-        return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Faces {
-            vertices,
-        })));
+        return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Faces { vertices })));
     }
     Ok(())
 }
@@ -75,11 +72,7 @@ fn read(header: &Header<'_>, source: &mut impl Source) -> Parsed<PolygonMesh> {
 fn vertices(element: &Element, source: &mut impl Source, mesh: &mut PolygonMesh) -> Parsed<()> {
     let mut axes = Vec::with_capacity(element.properties.len());
     for property in &element.properties {
-        axes.push(
-            ["x", "y", "z"]
-                .iter()
-                .position(|&name| property.name == name),
-        );
+        axes.push(["x", "y", "z"].iter().position(|&name| property.name == name));
     }
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         let place = axes.iter().position(|&found| found == Some(axis));
@@ -124,15 +117,12 @@ fn faces(
     source: &mut impl Source,
     mesh: &mut PolygonMesh,
 ) -> Parsed<()> {
-    let list = element
-        .properties
-        .iter()
-        .find_map(|property| match property.kind {
-            Kind::List { item, .. } if CORNER_LISTS.contains(&property.name.as_str()) => {
-                Some((&property.name, item))
-            }
-            _ => None,
-        });
+    let list = element.properties.iter().find_map(|property| match property.kind {
+        Kind::List { item, .. } if CORNER_LISTS.contains(&property.name.as_str()) => {
+            Some((&property.name, item))
+        }
+        _ => None,
+    });
     let Some((list, item)) = list else {
         return Err(Fault::syntax(
             element.position(),
@@ -184,11 +174,7 @@ fn faces(
 )]
 fn vertex_index(value: f64, vertices: u64, source: &impl Source) -> Parsed<u32> {
     if value.fract() != 0.0 {
-        return Err(Fault::syntax(
-            source.position(),
-            "a vertex index",
-            source.last_value(value),
-        ));
+        return Err(Fault::syntax(source.position(), "a vertex index", source.last_value(value)));
     }
     if value >= 0.0 && value <= f64::from(u32::MAX) && (value as u64) < vertices {
         return Ok(value as u32);
@@ -197,12 +183,7 @@ fn vertex_index(value: f64, vertices: u64, source: &impl Source) -> Parsed<u32> 
     let count = usize::try_from(vertices).unwrap_or(usize::MAX);
     Err(Fault::at(
         source.position(),
-        ReadErrorKind::IndexOutOfRange {
-            what: "vertex",
-            index,
-            count,
-            base: 0,
-        },
+        ReadErrorKind::IndexOutOfRange { what: "vertex", index, count, base: 0 },
     ))
 }
 
@@ -216,26 +197,18 @@ fn skip(element: &Element, source: &mut impl Source, mesh: &mut PolygonMesh) -> 
     }
     if element.count > 0 {
         let count = usize::try_from(element.count).unwrap_or(usize::MAX);
-        mesh.notes.push(Note::ElementsIgnored {
-            kind: format!("`{}` element", element.name),
-            count,
-        });
+        mesh.notes
+            .push(Note::ElementsIgnored { kind: format!("`{}` element", element.name), count });
     }
     Ok(())
 }
 
 fn note_ignored(element: &Element, kept: impl Fn(&str) -> bool, mesh: &mut PolygonMesh) {
-    let ignored = element
-        .properties
-        .iter()
-        .map(|property| &property.name)
-        .filter(|name| !kept(name));
+    let ignored =
+        element.properties.iter().map(|property| &property.name).filter(|name| !kept(name));
     let names: Vec<String> = ignored.cloned().collect();
     if !names.is_empty() {
-        mesh.notes.push(Note::PropertiesIgnored {
-            element: element.name.clone(),
-            names,
-        });
+        mesh.notes.push(Note::PropertiesIgnored { element: element.name.clone(), names });
     }
 }
 

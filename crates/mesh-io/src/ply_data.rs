@@ -34,11 +34,7 @@ pub(crate) trait Source {
         if value >= 0.0 && value.fract() == 0.0 {
             Ok(value as u64)
         } else {
-            Err(Fault::syntax(
-                self.position(),
-                "the length of a list",
-                self.last_value(value),
-            ))
+            Err(Fault::syntax(self.position(), "the length of a list", self.last_value(value)))
         }
     }
 }
@@ -53,24 +49,13 @@ struct Progress {
 
 impl Progress {
     fn start(&mut self, element: &Element) {
-        *self = Self {
-            element: element.name.clone(),
-            count: element.count,
-            rows: 0,
-        };
+        *self = Self { element: element.name.clone(), count: element.count, rows: 0 };
     }
 
     #[cold]
     fn truncated(&self, position: Position) -> Fault {
-        let Self {
-            element,
-            count,
-            rows,
-        } = self;
-        Fault::truncated(
-            position,
-            format!("{count} `{element}` elements, found {rows}"),
-        )
+        let Self { element, count, rows } = self;
+        Fault::truncated(position, format!("{count} `{element}` elements, found {rows}"))
     }
 }
 
@@ -89,11 +74,7 @@ pub(crate) struct Ascii<'a> {
 
 impl<'a> Ascii<'a> {
     pub(crate) fn new(text: Text<'a>) -> Self {
-        Self {
-            text,
-            last: b"",
-            progress: Progress::default(),
-        }
+        Self { text, last: b"", progress: Progress::default() }
     }
 
     fn token(&mut self) -> Parsed<&'a [u8]> {
@@ -112,11 +93,7 @@ impl Source for Ascii<'_> {
     }
 
     fn start_row(&mut self) -> Parsed<()> {
-        if self.text.seek() {
-            Ok(())
-        } else {
-            Err(self.progress.truncated(self.text.last_line()))
-        }
+        if self.text.seek() { Ok(()) } else { Err(self.progress.truncated(self.text.last_line())) }
     }
 
     fn value(&mut self, _: Scalar) -> Parsed<f64> {
@@ -173,13 +150,7 @@ pub(crate) struct Binary<'a> {
 
 impl<'a> Binary<'a> {
     pub(crate) fn new(bytes: &'a [u8], at: usize, order: ByteOrder) -> Self {
-        Self {
-            bytes,
-            at,
-            last: at,
-            order,
-            progress: Progress::default(),
-        }
+        Self { bytes, at, last: at, order, progress: Progress::default() }
     }
 
     fn take(&mut self, size: usize) -> Parsed<&'a [u8]> {
@@ -243,16 +214,10 @@ impl Source for Binary<'_> {
 
     fn finish(&mut self) -> Parsed<()> {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
-        if rest
-            .iter()
-            .all(|byte| byte.is_ascii_whitespace() || *byte == 0)
-        {
+        if rest.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0) {
             return Ok(());
         }
-        Err(goes_on(
-            Position::Byte(self.at),
-            format!("{} more bytes", rest.len()),
-        ))
+        Err(goes_on(Position::Byte(self.at), format!("{} more bytes", rest.len())))
     }
 
     fn position(&self) -> Position {

@@ -135,28 +135,16 @@ impl<'a> Header<'a> {
                 }
                 b"end_header" => break,
                 other => {
-                    return Err(Fault::syntax(
-                        text.here(),
-                        "a PLY header statement",
-                        quote(other),
-                    ));
+                    return Err(Fault::syntax(text.here(), "a PLY header statement", quote(other)));
                 }
             }
         }
         let Some(encoding) = encoding else {
-            return Err(Fault::syntax(
-                text.here(),
-                "a `format` statement in the header",
-                "none",
-            ));
+            return Err(Fault::syntax(text.here(), "a `format` statement in the header", "none"));
         };
         text.skip_tokens();
         text.pass_line_end_of_header(carriage_return);
-        Ok(Self {
-            encoding,
-            elements,
-            data: text,
-        })
+        Ok(Self { encoding, elements, data: text })
     }
 
     pub(crate) fn element(&self, name: &str) -> Option<&Element> {
@@ -186,30 +174,17 @@ fn read_encoding(text: &mut Text<'_>) -> Parsed<Encoding> {
 fn read_element(text: &mut Text<'_>) -> Parsed<Element> {
     let name = read_name(text, "an element name")?;
     let count = text.token().unwrap_or_default();
-    let count = parse_integer(count)
-        .and_then(|count| u64::try_from(count).ok())
-        .ok_or_else(|| {
-            Fault::syntax(
-                text.here(),
-                format!("the number of `{name}` elements"),
-                quote(count),
-            )
+    let count =
+        parse_integer(count).and_then(|count| u64::try_from(count).ok()).ok_or_else(|| {
+            Fault::syntax(text.here(), format!("the number of `{name}` elements"), quote(count))
         })?;
-    Ok(Element {
-        name,
-        count,
-        properties: Vec::new(),
-        line: text.line(),
-    })
+    Ok(Element { name, count, properties: Vec::new(), line: text.line() })
 }
 
 fn read_property(text: &mut Text<'_>) -> Parsed<Property> {
     let first = text.token().unwrap_or_default();
     let kind = if first == b"list" {
-        let (count, item) = (
-            text.token().unwrap_or_default(),
-            text.token().unwrap_or_default(),
-        );
+        let (count, item) = (text.token().unwrap_or_default(), text.token().unwrap_or_default());
         let (count_type, item_type) = (read_type(text, count)?, read_type(text, item)?);
         if !count_type.is_integer() {
             return Err(Fault::syntax(
@@ -218,17 +193,11 @@ fn read_property(text: &mut Text<'_>) -> Parsed<Property> {
                 quote(count),
             ));
         }
-        Kind::List {
-            count: count_type,
-            item: item_type,
-        }
+        Kind::List { count: count_type, item: item_type }
     } else {
         Kind::Scalar(read_type(text, first)?)
     };
-    Ok(Property {
-        name: read_name(text, "a property name")?,
-        kind,
-    })
+    Ok(Property { name: read_name(text, "a property name")?, kind })
 }
 
 fn read_type(text: &Text<'_>, name: &[u8]) -> Parsed<Scalar> {

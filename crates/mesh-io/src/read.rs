@@ -55,13 +55,7 @@ fn parse(bytes: &[u8], claimed: Option<Format>) -> Parsed<PolygonMesh> {
     if let Some(claimed) = claimed
         && claimed != format
     {
-        mesh.notes.insert(
-            0,
-            Note::ExtensionContradicted {
-                claimed,
-                found: format,
-            },
-        );
+        mesh.notes.insert(0, Note::ExtensionContradicted { claimed, found: format });
     }
     Ok(mesh)
 }
@@ -92,15 +86,9 @@ mod tests {
         assert_eq!(mesh.format, Format::Obj);
         assert_eq!(
             mesh.notes,
-            [Note::ExtensionContradicted {
-                claimed: Format::Off,
-                found: Format::Obj
-            }]
+            [Note::ExtensionContradicted { claimed: Format::Off, found: Format::Obj }]
         );
-        assert_eq!(
-            parse_mesh(OBJ, Some(Format::Obj), "a.obj").unwrap().notes,
-            []
-        );
+        assert_eq!(parse_mesh(OBJ, Some(Format::Obj), "a.obj").unwrap().notes, []);
         let off = parse_mesh(b"OFF 1 1 0\n0 0 0\n3 0 0 0", Some(Format::Stl), "a").unwrap();
         assert_eq!(off.format, Format::Off);
     }
@@ -117,14 +105,8 @@ mod tests {
         let fault = |bytes: &[u8]| parse_mesh(bytes, None, "a").unwrap_err().to_string();
         assert_eq!(fault(b""), "a: the file is empty");
         assert_eq!(fault(b" \r\n"), "a: the file is empty");
-        assert_eq!(
-            fault(b"\x1f\x8b\x08"),
-            "a: the file is compressed with gzip; unpack it first"
-        );
-        assert_eq!(
-            fault(b"\xff\xfev\0"),
-            "a: the text is UTF-16; save it as UTF-8"
-        );
+        assert_eq!(fault(b"\x1f\x8b\x08"), "a: the file is compressed with gzip; unpack it first");
+        assert_eq!(fault(b"\xff\xfev\0"), "a: the text is UTF-16; save it as UTF-8");
         let unknown = "a: the format is not known (OBJ, OFF, PLY and STL are read); the content starts with `<html>`";
         assert_eq!(fault(b"<html>"), unknown);
     }
@@ -132,12 +114,7 @@ mod tests {
     #[test]
     fn a_missing_file_is_named() {
         let error = read_mesh(Path::new("no/such/mesh.obj")).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .starts_with("no/such/mesh.obj: cannot be read: "),
-            "{error}"
-        );
+        assert!(error.to_string().starts_with("no/such/mesh.obj: cannot be read: "), "{error}");
         assert!(matches!(error.kind, ReadErrorKind::Io(_)));
     }
 }

@@ -28,10 +28,7 @@ fn announced(bytes: &[u8]) -> Option<u64> {
 pub(crate) fn looks_ascii(bytes: &[u8]) -> bool {
     let mut text = Text::new(bytes).without_comments();
     text.seek();
-    if !text
-        .token()
-        .is_some_and(|token| token.eq_ignore_ascii_case(b"solid"))
-    {
+    if !text.token().is_some_and(|token| token.eq_ignore_ascii_case(b"solid")) {
         return false;
     }
     let head = &bytes[..bytes.len().min(1024)];
@@ -42,9 +39,7 @@ pub(crate) fn looks_ascii(bytes: &[u8]) -> bool {
     text.seek();
     let second = text.token().unwrap_or_default();
     second.is_empty()
-        || [&b"facet"[..], b"endsolid"]
-            .iter()
-            .any(|word| second.eq_ignore_ascii_case(word))
+        || [&b"facet"[..], b"endsolid"].iter().any(|word| second.eq_ignore_ascii_case(word))
 }
 
 /// Reads an STL file.
@@ -53,11 +48,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
         return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Content)));
     }
     let binary = has_binary_size(bytes) || (bytes.contains(&0) && !looks_ascii(bytes));
-    if binary {
-        parse_binary(bytes)
-    } else {
-        parse_ascii(bytes)
-    }
+    if binary { parse_binary(bytes) } else { parse_ascii(bytes) }
 }
 
 fn parse_binary(bytes: &[u8]) -> Parsed<PolygonMesh> {
@@ -82,9 +73,7 @@ fn parse_binary(bytes: &[u8]) -> Parsed<PolygonMesh> {
                 let place = Position::Byte(HEADER + FACET * i + at);
                 return Err(Fault::at(
                     place,
-                    ReadErrorKind::NonFinite {
-                        found: value.to_string(),
-                    },
+                    ReadErrorKind::NonFinite { found: value.to_string() },
                 ));
             }
             *coordinate = f64::from(value);
@@ -93,14 +82,9 @@ fn parse_binary(bytes: &[u8]) -> Parsed<PolygonMesh> {
         found += 1;
     }
     if found < facets {
-        return Err(Fault::truncated(
-            end,
-            format!("{facets} facets, found {found}"),
-        ));
+        return Err(Fault::truncated(end, format!("{facets} facets, found {found}")));
     }
-    let used = usize::try_from(found)
-        .unwrap_or(usize::MAX)
-        .saturating_mul(FACET);
+    let used = usize::try_from(found).unwrap_or(usize::MAX).saturating_mul(FACET);
     let rest = data.len().saturating_sub(used);
     if rest >= FACET && rest.is_multiple_of(FACET) {
         let (announced, found) = (format!("{facets} facets"), format!("{} more", rest / FACET));
@@ -141,11 +125,7 @@ fn solid(text: &mut Text<'_>, weld: &mut Weld) -> Parsed<()> {
             return Ok(());
         }
         if !word.eq_ignore_ascii_case(b"facet") {
-            return Err(Fault::syntax(
-                text.here(),
-                "`facet` or `endsolid`",
-                quote(word),
-            ));
+            return Err(Fault::syntax(text.here(), "`facet` or `endsolid`", quote(word)));
         }
         // The normal follows from the corners; files give it carelessly, so it is not read.
         text.next_line();
@@ -180,11 +160,7 @@ fn expect(text: &mut Text<'_>, keyword: &str) -> Parsed<()> {
     if word.eq_ignore_ascii_case(keyword.as_bytes()) {
         return Ok(());
     }
-    Err(Fault::syntax(
-        text.here(),
-        format!("`{keyword}`"),
-        quote(word),
-    ))
+    Err(Fault::syntax(text.here(), format!("`{keyword}`"), quote(word)))
 }
 
 /// Gives corners at equal positions one vertex, in order of appearance.
@@ -230,9 +206,7 @@ impl Weld {
         });
         mesh.positions = self.positions;
         if self.degenerate > 0 {
-            mesh.notes.push(Note::DegenerateFacets {
-                count: self.degenerate,
-            });
+            mesh.notes.push(Note::DegenerateFacets { count: self.degenerate });
         }
         Ok(mesh)
     }

@@ -15,34 +15,18 @@ pub(crate) struct Text<'a> {
 impl<'a> Text<'a> {
     /// Starts at line 1, after a UTF-8 byte order mark. `#` starts a comment.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        let at = if bytes.starts_with(b"\xef\xbb\xbf") {
-            3
-        } else {
-            0
-        };
-        Self {
-            bytes,
-            at,
-            line: 1,
-            comments: true,
-            continuation: false,
-        }
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Self { bytes, at, line: 1, comments: true, continuation: false }
     }
 
     /// Lets a backslash at the end of a line join it with the next one.
     pub(crate) fn with_continuation(self) -> Self {
-        Self {
-            continuation: true,
-            ..self
-        }
+        Self { continuation: true, ..self }
     }
 
     /// Reads `#` like any other character.
     pub(crate) fn without_comments(self) -> Self {
-        Self {
-            comments: false,
-            ..self
-        }
+        Self { comments: false, ..self }
     }
 
     /// The current line, counted from 1.
@@ -137,9 +121,7 @@ impl<'a> Text<'a> {
         let Some(token) = self.token() else {
             return Ok(None);
         };
-        parse_number(token)
-            .map(Some)
-            .map_err(|()| not_a_number(self.here(), token, expected))
+        parse_number(token).map(Some).map_err(|()| not_a_number(self.here(), token, expected))
     }
 
     /// The next number of this line, which must be finite.
@@ -149,12 +131,7 @@ impl<'a> Text<'a> {
         };
         match parse_number(token) {
             Ok(number) if number.is_finite() => Ok(number),
-            Ok(_) => Err(Fault::at(
-                self.here(),
-                ReadErrorKind::NonFinite {
-                    found: quote(token),
-                },
-            )),
+            Ok(_) => Err(Fault::at(self.here(), ReadErrorKind::NonFinite { found: quote(token) })),
             Err(()) => Err(not_a_number(self.here(), token, expected)),
         }
     }
@@ -197,11 +174,7 @@ impl<'a> Text<'a> {
 
     fn pass_line_end(&mut self) {
         let crlf = self.bytes[self.at..].starts_with(b"\r\n");
-        let step = if crlf {
-            2
-        } else {
-            usize::from(self.at < self.bytes.len())
-        };
+        let step = if crlf { 2 } else { usize::from(self.at < self.bytes.len()) };
         self.at += step;
         self.line += usize::from(step > 0);
     }
@@ -210,10 +183,7 @@ impl<'a> Text<'a> {
     fn comment_starts(&self) -> bool {
         self.comments && self.bytes[self.at] == b'#' && {
             let after_point = self.at > 0 && self.bytes[self.at - 1] == b'.';
-            let letter = self
-                .bytes
-                .get(self.at + 1)
-                .is_some_and(|b| b"IQSiqs".contains(b));
+            let letter = self.bytes.get(self.at + 1).is_some_and(|b| b"IQSiqs".contains(b));
             !(after_point && letter)
         }
     }
@@ -250,9 +220,7 @@ pub(crate) fn refuse_nul(bytes: &[u8]) -> Parsed<()> {
 
 /// A number in text; `nan`, `inf` and numbers too large for a double are not finite.
 pub(crate) fn parse_number(token: &[u8]) -> Result<f64, ()> {
-    let number = std::str::from_utf8(token)
-        .ok()
-        .and_then(|text| text.parse().ok());
+    let number = std::str::from_utf8(token).ok().and_then(|text| text.parse().ok());
     match number {
         Some(number) => Ok(number),
         None if names_non_finite(token) => Ok(f64::NAN),
@@ -262,15 +230,8 @@ pub(crate) fn parse_number(token: &[u8]) -> Result<f64, ()> {
 
 /// Whether a token is one of the spellings of `nan` and `inf` that C libraries print.
 fn names_non_finite(token: &[u8]) -> bool {
-    let unsigned = token
-        .strip_prefix(b"-")
-        .or(token.strip_prefix(b"+"))
-        .unwrap_or(token);
-    let lower: Vec<u8> = unsigned
-        .iter()
-        .take(6)
-        .map(u8::to_ascii_lowercase)
-        .collect();
+    let unsigned = token.strip_prefix(b"-").or(token.strip_prefix(b"+")).unwrap_or(token);
+    let lower: Vec<u8> = unsigned.iter().take(6).map(u8::to_ascii_lowercase).collect();
     [&b"nan("[..], b"1.#ind", b"1.#inf", b"1.#qna", b"1.#sna"]
         .iter()
         .any(|name| lower.starts_with(name))
@@ -286,20 +247,15 @@ pub(crate) fn parse_integer(token: &[u8]) -> Option<i64> {
     if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
         return None;
     }
-    let size = digits.iter().fold(0i64, |n, d| {
-        n.saturating_mul(10).saturating_add(i64::from(d - b'0'))
-    });
+    let size =
+        digits.iter().fold(0i64, |n, d| n.saturating_mul(10).saturating_add(i64::from(d - b'0')));
     Some(if negative { -size } else { size })
 }
 
 #[cold]
 fn not_a_number(position: Position, token: &[u8], expected: &str) -> Fault {
     let comma = token.contains(&b',') && token.iter().any(u8::is_ascii_digit);
-    let hint = if comma {
-        " (write decimals with a point)"
-    } else {
-        ""
-    };
+    let hint = if comma { " (write decimals with a point)" } else { "" };
     Fault::syntax(position, expected, format!("{}{hint}", quote(token)))
 }
 

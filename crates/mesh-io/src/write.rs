@@ -28,11 +28,7 @@ pub struct MapObj<'a> {
 /// not three per face, a face names no vertex or a number is not finite.
 pub fn write_map_obj(writer: &mut impl Write, map: &MapObj<'_>) -> io::Result<()> {
     check(map)?;
-    for line in map
-        .comments
-        .iter()
-        .flat_map(|comment| comment.split(['\n', '\r']))
-    {
+    for line in map.comments.iter().flat_map(|comment| comment.split(['\n', '\r'])) {
         writeln!(writer, "# {line}")?;
     }
     for &[x, y, z] in map.positions {
@@ -51,11 +47,8 @@ pub fn write_map_obj(writer: &mut impl Write, map: &MapObj<'_>) -> io::Result<()
         };
         corners.push(index);
     }
-    for ([a, b, c], uv) in map
-        .faces
-        .iter()
-        .map(|face| face.map(|v| u64::from(v) + 1))
-        .zip(corners.chunks_exact(3))
+    for ([a, b, c], uv) in
+        map.faces.iter().map(|face| face.map(|v| u64::from(v) + 1)).zip(corners.chunks_exact(3))
     {
         writeln!(writer, "f {a}/{} {b}/{} {c}/{}", uv[0], uv[1], uv[2])?;
     }
@@ -68,25 +61,17 @@ fn check(map: &MapObj<'_>) -> io::Result<()> {
         let (uvs, faces) = (map.corner_uvs.len(), map.faces.len());
         return invalid(format!("{uvs} corner coordinates for {faces} triangles"));
     }
-    if let Some(face) = map
-        .faces
-        .iter()
-        .position(|face| face.iter().any(|&v| v as usize >= map.positions.len()))
+    if let Some(face) =
+        map.faces.iter().position(|face| face.iter().any(|&v| v as usize >= map.positions.len()))
     {
         return invalid(format!("face {face} names a vertex that does not exist"));
     }
-    if let Some(vertex) = map
-        .positions
-        .iter()
-        .position(|point| !point.iter().all(|x| x.is_finite()))
+    if let Some(vertex) =
+        map.positions.iter().position(|point| !point.iter().all(|x| x.is_finite()))
     {
         return invalid(format!("the position of vertex {vertex} is not finite"));
     }
-    if let Some(corner) = map
-        .corner_uvs
-        .iter()
-        .position(|uv| !uv.iter().all(|x| x.is_finite()))
-    {
+    if let Some(corner) = map.corner_uvs.iter().position(|uv| !uv.iter().all(|x| x.is_finite())) {
         return invalid(format!(
             "the map of face {}, corner {}, is not finite",
             corner / 3,
@@ -138,31 +123,15 @@ mod tests {
         String::from_utf8(bytes).unwrap()
     }
 
-    const SQUARE: [[f64; 3]; 4] = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ];
+    const SQUARE: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     const FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
     #[test]
     fn equal_coordinates_of_a_vertex_are_shared() {
-        let corner_uvs = &[
-            [0.0, 0.0],
-            [1.0, 0.0],
-            [1.0, 1.0],
-            [0.0, 0.0],
-            [1.0, 1.5],
-            [0.0, 0.0],
-        ];
+        let corner_uvs = &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.5], [0.0, 0.0]];
         let comments = &["made by hand\nf 1 1 1".to_owned()];
-        let map = MapObj {
-            positions: &SQUARE,
-            faces: &FACES,
-            corner_uvs,
-            comments,
-        };
+        let map = MapObj { positions: &SQUARE, faces: &FACES, corner_uvs, comments };
         let expected = "# made by hand\n# f 1 1 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
             vt 0 0\nvt 1 0\nvt 1 1\nvt 1 1.5\nvt 0 0\nf 1/1 2/2 3/3\nf 1/1 3/4 4/5\n";
         assert_eq!(text(&map), expected);
@@ -182,74 +151,40 @@ mod tests {
         ];
         let positions: Vec<[f64; 3]> = numbers.iter().map(|&x| [x, -x, x / 7.0]).collect();
         let corner_uvs: Vec<[f64; 2]> = (0..6).map(|i| [numbers[i], numbers[i + 2]]).collect();
-        let map = MapObj {
-            positions: &positions,
-            faces: &FACES,
-            corner_uvs: &corner_uvs,
-            comments: &[],
-        };
+        let map =
+            MapObj { positions: &positions, faces: &FACES, corner_uvs: &corner_uvs, comments: &[] };
         let mesh = parse_mesh(text(&map).as_bytes(), Some(Format::Obj), "map").unwrap();
-        let bits = |points: &[[f64; 3]]| {
-            points
-                .iter()
-                .map(|p| p.map(f64::to_bits))
-                .collect::<Vec<_>>()
-        };
+        let bits =
+            |points: &[[f64; 3]]| points.iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&mesh.positions), bits(&positions));
         assert_eq!(mesh.polygons.corners(), FACES.as_flattened());
         let uvs = mesh.corner_uvs.unwrap();
-        let read: Vec<_> = uvs
-            .corners
-            .iter()
-            .map(|&i| uvs.coordinates[i as usize].map(f64::to_bits))
-            .collect();
-        assert_eq!(
-            read,
-            corner_uvs
-                .iter()
-                .map(|uv| uv.map(f64::to_bits))
-                .collect::<Vec<_>>()
-        );
+        let read: Vec<_> =
+            uvs.corners.iter().map(|&i| uvs.coordinates[i as usize].map(f64::to_bits)).collect();
+        assert_eq!(read, corner_uvs.iter().map(|uv| uv.map(f64::to_bits)).collect::<Vec<_>>());
     }
 
     #[test]
     fn impossible_maps_are_refused() {
         let uvs = [[0.0; 2]; 6];
-        let good = MapObj {
-            positions: &SQUARE,
-            faces: &FACES,
-            corner_uvs: &uvs,
-            comments: &[],
-        };
+        let good = MapObj { positions: &SQUARE, faces: &FACES, corner_uvs: &uvs, comments: &[] };
         let refused =
             |map: &MapObj<'_>| write_map_obj(&mut Vec::new(), map).unwrap_err().to_string();
         assert_eq!(
-            refused(&MapObj {
-                corner_uvs: &uvs[1..],
-                ..good
-            }),
+            refused(&MapObj { corner_uvs: &uvs[1..], ..good }),
             "5 corner coordinates for 2 triangles"
         );
-        let face = refused(&MapObj {
-            positions: &SQUARE[1..],
-            ..good
-        });
+        let face = refused(&MapObj { positions: &SQUARE[1..], ..good });
         assert_eq!(face, "face 1 names a vertex that does not exist");
         let mut broken = uvs;
         broken[4][1] = f64::NAN;
         assert_eq!(
-            refused(&MapObj {
-                corner_uvs: &broken,
-                ..good
-            }),
+            refused(&MapObj { corner_uvs: &broken, ..good }),
             "the map of face 1, corner 1, is not finite"
         );
         let far = [[f64::INFINITY; 3]; 4];
         assert_eq!(
-            refused(&MapObj {
-                positions: &far,
-                ..good
-            }),
+            refused(&MapObj { positions: &far, ..good }),
             "the position of vertex 0 is not finite"
         );
     }

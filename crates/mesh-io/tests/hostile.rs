@@ -3,13 +3,8 @@
 use proptest::prelude::*;
 use seamstress_io::{Format, PolygonMesh, parse_mesh};
 
-const FORMATS: [Option<Format>; 5] = [
-    None,
-    Some(Format::Obj),
-    Some(Format::Off),
-    Some(Format::Ply),
-    Some(Format::Stl),
-];
+const FORMATS: [Option<Format>; 5] =
+    [None, Some(Format::Obj), Some(Format::Off), Some(Format::Ply), Some(Format::Stl)];
 
 const OBJ: &str = "# c\nv 0 0 0 1\nv 1 0 0\nv 0 1 0 .1 .2 .3\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 -1/1/1\nl 1 2 \\\n 3\n";
 const OFF: &str =
@@ -32,40 +27,23 @@ fn samples() -> Vec<Vec<u8>> {
     let mut stl = vec![b' '; 80];
     stl.extend(1u32.to_le_bytes());
     stl.extend(
-        [0f32, 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0.]
-            .map(f32::to_le_bytes)
-            .as_flattened(),
+        [0f32, 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0.].map(f32::to_le_bytes).as_flattened(),
     );
     stl.extend([0; 2]);
-    vec![
-        OBJ.into(),
-        OFF.into(),
-        STL.into(),
-        ply_text.into(),
-        ply,
-        stl,
-    ]
+    vec![OBJ.into(), OFF.into(), STL.into(), ply_text.into(), ply, stl]
 }
 
 /// Parses in every way and checks what a mesh promises.
 fn parse_all(bytes: &[u8]) -> usize {
-    let meshes = FORMATS
-        .iter()
-        .filter_map(|&format| match parse_mesh(bytes, format, "a") {
-            Ok(mesh) => Some(mesh),
-            Err(error) => {
-                let message = error.to_string();
-                assert!(
-                    message.starts_with("a: ") || message.starts_with("a, "),
-                    "{message}"
-                );
-                assert!(
-                    message.len() < 500 && !message.contains(char::is_control),
-                    "{message:?}"
-                );
-                None
-            }
-        });
+    let meshes = FORMATS.iter().filter_map(|&format| match parse_mesh(bytes, format, "a") {
+        Ok(mesh) => Some(mesh),
+        Err(error) => {
+            let message = error.to_string();
+            assert!(message.starts_with("a: ") || message.starts_with("a, "), "{message}");
+            assert!(message.len() < 500 && !message.contains(char::is_control), "{message:?}");
+            None
+        }
+    });
     meshes.map(|mesh| check(&mesh)).count()
 }
 
@@ -76,19 +54,11 @@ fn check(mesh: &PolygonMesh) {
     assert!(mesh.polygons.iter().all(|polygon| polygon.len() >= 3));
     let lines = mesh.lines.as_flattened();
     assert!(
-        mesh.polygons
-            .corners()
-            .iter()
-            .chain(lines)
-            .all(|&vertex| (vertex as usize) < vertices)
+        mesh.polygons.corners().iter().chain(lines).all(|&vertex| (vertex as usize) < vertices)
     );
     if let Some(uvs) = &mesh.corner_uvs {
         assert_eq!(uvs.corners.len(), mesh.polygons.corners().len());
-        assert!(
-            uvs.corners
-                .iter()
-                .all(|&uv| (uv as usize) < uvs.coordinates.len())
-        );
+        assert!(uvs.corners.iter().all(|&uv| (uv as usize) < uvs.coordinates.len()));
         assert!(uvs.coordinates.as_flattened().iter().all(|x| x.is_finite()));
     }
     for note in &mesh.notes {
@@ -99,12 +69,7 @@ fn check(mesh: &PolygonMesh) {
 #[test]
 fn samples_are_read() {
     for sample in samples() {
-        assert_eq!(
-            parse_all(&sample),
-            FORMATS.len(),
-            "{}",
-            String::from_utf8_lossy(&sample)
-        );
+        assert_eq!(parse_all(&sample), FORMATS.len(), "{}", String::from_utf8_lossy(&sample));
     }
 }
 
@@ -152,9 +117,7 @@ proptest! {
 fn hostile_shapes_take_linear_time() {
     const SIZE: usize = 200_000;
     let header = |line: &str| {
-        let lines: String = (0..SIZE)
-            .map(|i| line.replace('@', &i.to_string()))
-            .collect();
+        let lines: String = (0..SIZE).map(|i| line.replace('@', &i.to_string())).collect();
         format!("ply\nformat ascii 1.0\n{lines}")
     };
     let files = [

@@ -47,17 +47,10 @@ impl Gather {
     }
 
     fn sum(&self, values: &[f64], targets: &mut [f64]) {
-        targets
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(4096)
-            .for_each(|(i, out)| {
-                let range = self.offsets[i] as usize..self.offsets[i + 1] as usize;
-                *out = self.sources[range]
-                    .iter()
-                    .map(|&s| values[s as usize])
-                    .sum();
-            });
+        targets.par_iter_mut().enumerate().with_min_len(4096).for_each(|(i, out)| {
+            let range = self.offsets[i] as usize..self.offsets[i + 1] as usize;
+            *out = self.sources[range].iter().map(|&s| values[s as usize]).sum();
+        });
     }
 }
 

@@ -156,13 +156,7 @@ mod tests {
         for shift in [0.1, 2.0] {
             let diagonal = pattern.diagonal();
             let values: Vec<f64> = (0..pattern.len() as u32)
-                .map(|k| {
-                    if diagonal.contains(&k) {
-                        2.0 + shift
-                    } else {
-                        -1.0
-                    }
-                })
+                .map(|k| if diagonal.contains(&k) { 2.0 + shift } else { -1.0 })
                 .collect();
             cholesky.factorize(&pattern, &values).unwrap();
             let x: Vec<f64> = (0..30).map(|i| f64::from(i).sin()).collect();
@@ -172,12 +166,7 @@ mod tests {
             cholesky.solve(&mut b);
             assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-12));
             cholesky.solve_columns(&mut twice, 2).unwrap();
-            assert!(
-                b.repeat(2)
-                    .iter()
-                    .zip(&twice)
-                    .all(|(x, b)| (x - b).abs() < 1e-12)
-            );
+            assert!(b.repeat(2).iter().zip(&twice).all(|(x, b)| (x - b).abs() < 1e-12));
         }
     }
 
@@ -199,10 +188,7 @@ mod tests {
     fn refuses_an_indefinite_matrix_and_a_bad_order() {
         let pattern = path(2);
         let mut cholesky = Cholesky::analyze(&pattern, &[0, 1]).unwrap();
-        assert_eq!(
-            cholesky.factorize(&pattern, &[1.0, 2.0, 1.0]),
-            Err(NotPositiveDefinite)
-        );
+        assert_eq!(cholesky.factorize(&pattern, &[1.0, 2.0, 1.0]), Err(NotPositiveDefinite));
         assert!(Cholesky::<f64>::analyze(&pattern, &[0, 0]).is_err());
     }
 }

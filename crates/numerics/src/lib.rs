@@ -4,10 +4,12 @@
 //! * [`ordering`]: nested dissection of a graph (METIS), so that factors stay sparse;
 //! * [`pattern`]: a symmetric sparsity pattern that is built once and filled many times;
 //! * [`assembly`]: sums of small dense blocks into such a pattern;
+//! * [`dense`]: small dense systems;
 //! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once.
 
 pub mod assembly;
 pub mod cholesky;
+pub mod dense;
 pub mod ordering;
 pub mod pattern;
 

@@ -31,10 +31,8 @@ impl Graph {
             all[fill[b as usize] as usize] = a as i32;
             fill[b as usize] += 1;
         }
-        let mut graph = Graph {
-            offsets: Vec::with_capacity(n + 1),
-            neighbours: Vec::with_capacity(all.len()),
-        };
+        let mut graph =
+            Graph { offsets: Vec::with_capacity(n + 1), neighbours: Vec::with_capacity(all.len()) };
         graph.offsets.push(0);
         for i in 0..n {
             let list = &mut all[count[i] as usize..count[i + 1] as usize];
@@ -74,9 +72,7 @@ pub fn nested_dissection(graph: &Graph) -> Vec<u32> {
     if n <= 2 || graph.neighbours.is_empty() {
         return (0..n as u32).collect();
     }
-    let _turn = METIS
-        .lock()
-        .unwrap_or_else(|poisoned| poisoned.into_inner());
+    let _turn = METIS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let mut nodes = n as i32;
     let mut offsets = graph.offsets.clone();
     let mut neighbours = graph.neighbours.clone();
@@ -107,10 +103,7 @@ pub fn nested_dissection(graph: &Graph) -> Vec<u32> {
 /// Repeats an order of nodes for `block` unknowns per node: node `i` owns unknowns
 /// `block * i .. block * (i + 1)`.
 pub fn expand(order: &[u32], block: u32) -> Vec<u32> {
-    order
-        .iter()
-        .flat_map(|&i| (0..block).map(move |k| block * i + k))
-        .collect()
+    order.iter().flat_map(|&i| (0..block).map(move |k| block * i + k)).collect()
 }
 
 #[cfg(test)]
@@ -149,10 +142,7 @@ mod tests {
 
     #[test]
     fn tiny_graphs_keep_their_order() {
-        assert_eq!(
-            nested_dissection(&Graph::from_edges(3, [].into_iter())),
-            [0, 1, 2]
-        );
+        assert_eq!(nested_dissection(&Graph::from_edges(3, [].into_iter())), [0, 1, 2]);
         assert_eq!(expand(&[1, 0], 2), [2, 3, 0, 1]);
     }
 }

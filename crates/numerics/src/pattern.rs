@@ -30,9 +30,7 @@ impl Pattern {
         let (row, column) = (i.max(j), i.min(j) as usize);
         let begin = *self.column_offsets.get(column)?;
         let end = *self.column_offsets.get(column + 1)?;
-        let found = self.rows[begin as usize..end as usize]
-            .binary_search(&row)
-            .ok()?;
+        let found = self.rows[begin as usize..end as usize].binary_search(&row).ok()?;
         Some(begin + found as u32)
     }
 

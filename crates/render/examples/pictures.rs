@@ -27,11 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let period = rest.first().map(|p| p.parse()).transpose()?;
     let mesh = read_obj(&std::fs::read_to_string(path)?)?;
     let textured = mesh.uvs.len() == 3 * mesh.faces.len();
-    let (cones, seams) = if textured {
-        (cones(&mesh), seams(&mesh))
-    } else {
-        Default::default()
-    };
+    let (cones, seams) = if textured { (cones(&mesh), seams(&mesh)) } else { Default::default() };
     let scene = Scene {
         positions: &mesh.positions,
         faces: &mesh.faces,
@@ -45,11 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             true => Paint::checker(period),
             false => Paint::plain(),
         };
-        let options = SurfaceOptions {
-            view,
-            paint,
-            ..SurfaceOptions::default()
-        };
+        let options = SurfaceOptions { view, paint, ..SurfaceOptions::default() };
         let file = File::create(format!("{prefix}_{name}.png"))?;
         render_surface(&scene, &options)?.write_png(BufWriter::new(file))?;
     }
@@ -79,9 +71,7 @@ fn read_obj(text: &str) -> Result<Mesh, Box<dyn Error>> {
                     let triangle = [corners[0], pair[0], pair[1]];
                     mesh.faces.push(triangle.map(|c| c[0] - 1));
                     mesh.uvs.extend(
-                        triangle
-                            .iter()
-                            .filter_map(|c| uvs.get((c[1] as usize).wrapping_sub(1))),
+                        triangle.iter().filter_map(|c| uvs.get((c[1] as usize).wrapping_sub(1))),
                     );
                 }
             }
@@ -95,10 +85,7 @@ fn read_obj(text: &str) -> Result<Mesh, Box<dyn Error>> {
 fn corner(word: &str) -> Result<[u32; 2], Box<dyn Error>> {
     let mut parts = word.split('/');
     let vertex = parts.next().unwrap_or_default().parse()?;
-    let uv = parts
-        .next()
-        .filter(|p| !p.is_empty())
-        .map_or(Ok(0), str::parse)?;
+    let uv = parts.next().filter(|p| !p.is_empty()).map_or(Ok(0), str::parse)?;
     Ok([vertex, uv])
 }
 
@@ -134,10 +121,7 @@ fn seams(mesh: &Mesh) -> Vec<[u32; 2]> {
         for k in 0..3 {
             let (a, b) = (face[k], face[(k + 1) % 3]);
             let ends = [uv[k], uv[(k + 1) % 3]];
-            if sides
-                .get(&[b, a])
-                .is_some_and(|across| *across != [ends[1], ends[0]])
-            {
+            if sides.get(&[b, a]).is_some_and(|across| *across != [ends[1], ends[0]]) {
                 seams.push([a, b]);
             }
             sides.insert([a, b], ends);

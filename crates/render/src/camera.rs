@@ -59,11 +59,7 @@ impl View {
         let flatness = (1.0 - 2.0 * spread.height_ratio).clamp(0.0, 1.0);
         let elevation = (ELEVATION[0] + flatness * (ELEVATION[1] - ELEVATION[0])).to_radians();
         let level = elevation.cos();
-        Ok([
-            level * azimuth.sin(),
-            elevation.sin(),
-            level * azimuth.cos(),
-        ])
+        Ok([level * azimuth.sin(), elevation.sin(), level * azimuth.cos()])
     }
 }
 
@@ -159,10 +155,7 @@ impl Camera {
             reference: None,
             middle: samples.map(|s| 0.5 * s),
         };
-        let points = faces
-            .iter()
-            .flatten()
-            .map(|&v| camera.axes(positions[v as usize]));
+        let points = faces.iter().flatten().map(|&v| camera.axes(positions[v as usize]));
         let usable = samples.map(|s| 0.5 * s * (1.0 - 2.0 * margin));
         match projection {
             Projection::Orthographic => {
@@ -242,9 +235,8 @@ fn eye_seeing_all(
         }
     }
     let clearance = 0.05 * (high[2] - low[2]) + 0.01;
-    let distance = (0..2).fold(low[2] - clearance, |z, k| {
-        z.min(-(reach[k][0] + reach[k][1]) / (2.0 * slopes[k]))
-    });
+    let distance = (0..2)
+        .fold(low[2] - clearance, |z, k| z.min(-(reach[k][0] + reach[k][1]) / (2.0 * slopes[k])));
     let across = reach.map(|[a, b]| 0.5 * (a - b));
     ([across[0], across[1], distance], 0.5 * (low[2] + high[2]))
 }
@@ -253,12 +245,8 @@ fn eye_seeing_all(
 mod tests {
     use super::*;
 
-    const BOX: [Vec3; 4] = [
-        [-1.0, -0.5, -0.3],
-        [1.0, 0.5, 0.3],
-        [-0.7, 0.5, -0.3],
-        [1.0, -0.5, 0.3],
-    ];
+    const BOX: [Vec3; 4] =
+        [[-1.0, -0.5, -0.3], [1.0, 0.5, 0.3], [-0.7, 0.5, -0.3], [1.0, -0.5, 0.3]];
     const FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 3, 1]];
 
     #[test]
@@ -304,9 +292,7 @@ mod tests {
         // A wall that runs along z, and one along the diagonal.
         for (x, z, expected) in [(0.0, 1.0, 90.0), (1.0, 1.0, -45.0), (1.0, 0.0, 0.0)] {
             let wall = [[-x, -0.5, -z], [x, -0.5, z], [x, 0.5, z], [-x, 0.5, -z]];
-            let front = Spread::of(&wall, &[[0, 1, 2], [0, 2, 3]])
-                .front()
-                .to_degrees();
+            let front = Spread::of(&wall, &[[0, 1, 2], [0, 2, 3]]).front().to_degrees();
             let off = (front - expected).rem_euclid(180.0);
             assert!(off.min(180.0 - off) < 1e-6, "{front} is not {expected}");
         }
@@ -323,10 +309,7 @@ mod tests {
                 [9.0, 9.0],
                 0.0,
             );
-            assert!(matches!(
-                fit,
-                Err(RenderError::BadOption { name: "view", .. })
-            ));
+            assert!(matches!(fit, Err(RenderError::BadOption { name: "view", .. })));
         }
     }
 }

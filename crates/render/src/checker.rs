@@ -92,10 +92,7 @@ mod tests {
 
     #[test]
     fn the_box_average_is_exact() {
-        let pattern = Pattern {
-            line_width: 0.0,
-            ..PATTERN
-        };
+        let pattern = Pattern { line_width: 0.0, ..PATTERN };
         // A quarter of the box reaches over the border between two checks.
         let color = pattern.color([0.75, 0.5], [1.0, 0.25]);
         assert!((color[0] - 0.75).abs() < 1e-6);
@@ -116,10 +113,7 @@ mod tests {
     #[test]
     fn far_uvs_keep_their_phase() {
         let far = 2.0_f64.powi(40);
-        let checks = in_checks(
-            [[far + 0.5, -far - 1.5], [far + 1.0, -far], [far, -far]],
-            0.5,
-        );
+        let checks = in_checks([[far + 0.5, -far - 1.5], [far + 1.0, -far], [far, -far]], 0.5);
         assert_eq!(checks, [[1.0, 1.0], [2.0, 4.0], [0.0, 4.0]]);
     }
 }

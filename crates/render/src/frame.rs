@@ -33,11 +33,7 @@ pub(crate) trait Painter: Sync {
 impl Raster {
     pub(crate) fn new(size: [u32; 2], supersampling: u32) -> Result<Self, RenderError> {
         if size.iter().any(|s| !(1..=MAX_SIDE).contains(s)) {
-            return Err(RenderError::BadSize {
-                width: size[0],
-                height: size[1],
-                limit: MAX_SIDE,
-            });
+            return Err(RenderError::BadSize { width: size[0], height: size[1], limit: MAX_SIDE });
         }
         if !(1..=MAX_SUPERSAMPLING).contains(&supersampling) {
             return Err(RenderError::BadOption {
@@ -45,10 +41,7 @@ impl Raster {
                 requirement: "between 1 and 8",
             });
         }
-        Ok(Self {
-            size,
-            supersampling,
-        })
+        Ok(Self { size, supersampling })
     }
 
     /// Width and height in samples.
@@ -73,35 +66,32 @@ impl Raster {
         let factor = self.supersampling as usize;
         let rows = (BAND_SAMPLES / (width * factor * factor)).clamp(1, height.div_ceil(MIN_BANDS));
         let mut pixels = vec![0; 3 * width * height];
-        pixels
-            .par_chunks_mut(3 * width * rows)
-            .enumerate()
-            .for_each(|(index, bytes)| {
-                let count = bytes.len() / (3 * width);
-                let mut band = Band::new(Window {
-                    width: width * factor,
-                    first_row: index * rows * factor,
-                    rows: count * factor,
-                });
-                painter.draw(&mut band);
-                let mut colors = vec![[0.0; 3]; width * factor];
-                let mut sums = vec![[0.0; 3]; width];
-                for (pixel_row, out) in bytes.chunks_mut(3 * width).enumerate() {
-                    sums.fill([0.0; 3]);
-                    for row in pixel_row * factor..(pixel_row + 1) * factor {
-                        painter.shade(&band, row, &mut colors);
-                        for (sum, samples) in sums.iter_mut().zip(colors.chunks(factor)) {
-                            for color in samples {
-                                (0..3).for_each(|c| sum[c] += color[c]);
-                            }
+        pixels.par_chunks_mut(3 * width * rows).enumerate().for_each(|(index, bytes)| {
+            let count = bytes.len() / (3 * width);
+            let mut band = Band::new(Window {
+                width: width * factor,
+                first_row: index * rows * factor,
+                rows: count * factor,
+            });
+            painter.draw(&mut band);
+            let mut colors = vec![[0.0; 3]; width * factor];
+            let mut sums = vec![[0.0; 3]; width];
+            for (pixel_row, out) in bytes.chunks_mut(3 * width).enumerate() {
+                sums.fill([0.0; 3]);
+                for row in pixel_row * factor..(pixel_row + 1) * factor {
+                    painter.shade(&band, row, &mut colors);
+                    for (sum, samples) in sums.iter_mut().zip(colors.chunks(factor)) {
+                        for color in samples {
+                            (0..3).for_each(|c| sum[c] += color[c]);
                         }
                     }
-                    let weight = 1.0 / (factor * factor) as f32;
-                    for (pixel, sum) in out.chunks_mut(3).zip(&sums) {
-                        (0..3).for_each(|c| pixel[c] = to_srgb8(sum[c] * weight));
-                    }
                 }
-            });
+                let weight = 1.0 / (factor * factor) as f32;
+                for (pixel, sum) in out.chunks_mut(3).zip(&sums) {
+                    (0..3).for_each(|c| pixel[c] = to_srgb8(sum[c] * weight));
+                }
+            }
+        });
         Image::from_rows(self.size[0], self.size[1], pixels)
     }
 }

@@ -15,11 +15,7 @@ pub struct Image {
 impl Image {
     /// Wraps rows of bytes; the caller guarantees `3 * width * height` of them.
     pub(crate) fn from_rows(width: u32, height: u32, pixels: Vec<u8>) -> Self {
-        Self {
-            width,
-            height,
-            pixels,
-        }
+        Self { width, height, pixels }
     }
 
     /// Width in pixels.
@@ -70,11 +66,7 @@ impl Image {
 /// Linear light to a byte of sRGB (IEC 61966-2-1).
 pub(crate) fn to_srgb8(linear: f32) -> u8 {
     let c = linear.clamp(0.0, 1.0);
-    let s = if c <= 0.003_130_8 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
+    let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
     (255.0 * s + 0.5) as u8
 }
 
@@ -82,11 +74,7 @@ pub(crate) fn to_srgb8(linear: f32) -> u8 {
 pub(crate) fn to_linear(srgb: [f64; 3]) -> [f32; 3] {
     srgb.map(|s| {
         let s = s.clamp(0.0, 1.0);
-        let c = if s <= 0.040_45 {
-            s / 12.92
-        } else {
-            ((s + 0.055) / 1.055).powf(2.4)
-        };
+        let c = if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
         c as f32
     })
 }
@@ -106,15 +94,11 @@ mod tests {
     #[test]
     fn png_decodes_to_the_same_pixels() {
         let (width, height) = (7, 5);
-        let pixels: Vec<u8> = (0..3 * width * height)
-            .map(|i| (i * 37 % 256) as u8)
-            .collect();
+        let pixels: Vec<u8> = (0..3 * width * height).map(|i| (i * 37 % 256) as u8).collect();
         let image = Image::from_rows(width, height, pixels.clone());
         let mut bytes = Vec::new();
         image.write_png(&mut bytes).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-            .read_info()
-            .unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
         let mut decoded = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut decoded).unwrap();
         assert_eq!((info.width, info.height), (width, height));

@@ -61,11 +61,7 @@ impl Barycentric {
             let sum = change[0] + change[1] + change[2];
             std::array::from_fn(|i| (change[i] - value[i] * sum) * inverse_sum)
         };
-        Weights {
-            value,
-            by_x: derivative(0),
-            by_y: derivative(1),
-        }
+        Weights { value, by_x: derivative(0), by_y: derivative(1) }
     }
 }
 
@@ -82,26 +78,14 @@ mod tests {
 
     #[test]
     fn perspective_weights_and_their_derivatives_agree() {
-        let point = |x, y, w: f64| ScreenPoint {
-            x,
-            y,
-            depth: 0.0,
-            inverse_w: 1.0 / w,
-        };
-        let triangle = [
-            point(0.0, 0.0, 1.0),
-            point(10.0, 1.0, 3.0),
-            point(2.0, 8.0, 2.0),
-        ];
+        let point = |x, y, w: f64| ScreenPoint { x, y, depth: 0.0, inverse_w: 1.0 / w };
+        let triangle = [point(0.0, 0.0, 1.0), point(10.0, 1.0, 3.0), point(2.0, 8.0, 2.0)];
         let barycentric = Barycentric::new(triangle).unwrap();
         // Halfway along the first edge on the screen lies three quarters nearer the near end.
         let middle = barycentric.at(5.0, 0.5).value;
         assert!((middle[0] - 0.75).abs() < 1e-12 && (middle[1] - 0.25).abs() < 1e-12);
         let (here, step) = (barycentric.at(4.0, 3.0), 1e-6);
-        let (right, below) = (
-            barycentric.at(4.0 + step, 3.0),
-            barycentric.at(4.0, 3.0 + step),
-        );
+        let (right, below) = (barycentric.at(4.0 + step, 3.0), barycentric.at(4.0, 3.0 + step));
         for i in 0..3 {
             assert!(((right.value[i] - here.value[i]) / step - here.by_x[i]).abs() < 1e-6);
             assert!(((below.value[i] - here.value[i]) / step - here.by_y[i]).abs() < 1e-6);

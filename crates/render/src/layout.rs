@@ -120,16 +120,11 @@ impl<'a> LayoutPicture<'a> {
             None => vec![[0.0; 3]; scene.positions.len()],
         };
         let screen = Screen::fit(plane.as_flattened(), raster.samples(), options.margin);
-        let corners: Vec<_> = plane
-            .iter()
-            .map(|f| f.map(|uv| screen.project(uv)))
-            .collect();
+        let corners: Vec<_> = plane.iter().map(|f| f.map(|uv| screen.project(uv))).collect();
         let faces = 0..plane.len() as u32;
         let shorter = raster.shorter_side();
         Ok(Self {
-            flipped: faces
-                .filter(|&f| signed_area(plane[f as usize]) < 0.0)
-                .collect(),
+            flipped: faces.filter(|&f| signed_area(plane[f as usize]) < 0.0).collect(),
             coat: options.paint.prepare(scene, &positions)?,
             outlines: outlines(scene, &plane)
                 .map(|[a, b]| [a, b].map(|c| corners[c as usize / 3][c as usize % 3]))
@@ -173,10 +168,7 @@ impl Screen {
         let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
         Self {
             scale,
-            offset: [
-                0.5 * samples[0] - scale * middle[0],
-                0.5 * samples[1] + scale * middle[1],
-            ],
+            offset: [0.5 * samples[0] - scale * middle[0], 0.5 * samples[1] + scale * middle[1]],
         }
     }
 
@@ -263,10 +255,7 @@ impl Painter for LayoutPicture<'_> {
         }
         if self.dot_radius > 0.0 {
             for (index, (centre, _)) in self.dots.iter().enumerate() {
-                let centre = ScreenPoint {
-                    depth: 2.0,
-                    ..*centre
-                };
+                let centre = ScreenPoint { depth: 2.0, ..*centre };
                 band.draw_ball(centre, self.dot_radius, 0.0, FIRST_CONE + index as u32);
             }
         }
@@ -285,20 +274,14 @@ impl Painter for LayoutPicture<'_> {
                 dot if dot >= FIRST_CONE => {
                     let (centre, color) = self.dots[(dot - FIRST_CONE) as usize];
                     let reach = (x - centre.x).hypot(y - centre.y);
-                    if reach > 0.8 * self.dot_radius {
-                        self.background
-                    } else {
-                        color
-                    }
+                    if reach > 0.8 * self.dot_radius { self.background } else { color }
                 }
                 face => {
                     if face != current {
                         current = face;
                         shader = self.shader(face as usize);
                     }
-                    shader
-                        .as_ref()
-                        .map_or(self.background, |s| s.color(self, x, y))
+                    shader.as_ref().map_or(self.background, |s| s.color(self, x, y))
                 }
             };
         }
@@ -351,9 +334,7 @@ impl Shader<'_> {
     fn color(&self, picture: &LayoutPicture, x: f64, y: f64) -> [f32; 3] {
         let weights = self.barycentric.at(x, y);
         let fill = self.coat.color(&weights);
-        let nearest = (0..3).fold(f64::INFINITY, |d, k| {
-            d.min(weights.value[k] * self.heights[k])
-        });
+        let nearest = (0..3).fold(f64::INFINITY, |d, k| d.min(weights.value[k] * self.heights[k]));
         let covered = (picture.edge_half_width + 0.5 - nearest).clamp(0.0, 1.0);
         let blend = (self.edges * covered) as f32;
         std::array::from_fn(|c| fill[c] + blend * (picture.edge[c] - fill[c]))

@@ -27,11 +27,7 @@ impl Lights {
             let sum = add(scale(camera.right, right), scale(camera.up, up));
             unit(add(sum, scale(camera.back, back))).unwrap_or(camera.back)
         };
-        Self {
-            key: towards(-0.55, 0.65, 0.75),
-            fill: towards(0.9, 0.1, 0.45),
-            back: camera.back,
-        }
+        Self { key: towards(-0.55, 0.65, 0.75), fill: towards(0.9, 0.1, 0.45), back: camera.back }
     }
 
     /// The light on a surface whose unit normal is turned to the viewer.

@@ -12,10 +12,7 @@ pub(crate) struct Normalizer<const N: usize> {
 impl<const N: usize> Normalizer<N> {
     /// `None` if the points all coincide (or there is none).
     pub(crate) fn fit(points: impl Iterator<Item = [f64; N]> + Clone) -> Option<Self> {
-        let largest = points
-            .clone()
-            .flatten()
-            .fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = points.clone().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         if largest == 0.0 {
             return None;
         }

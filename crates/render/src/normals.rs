@@ -9,10 +9,8 @@ const CREASE_ANGLE: f64 = 40.0;
 /// Unit normals of the three corners of every face: the area-weighted mean over the faces that
 /// are reached around the vertex without crossing a crease.
 pub(crate) fn corner_normals(positions: &[Vec3], faces: &[[u32; 3]]) -> Vec<[[f32; 3]; 3]> {
-    let weighted: Vec<Vec3> = faces
-        .iter()
-        .map(|f| area_normal(f.map(|v| positions[v as usize])))
-        .collect();
+    let weighted: Vec<Vec3> =
+        faces.iter().map(|f| area_normal(f.map(|v| positions[v as usize]))).collect();
     let flat: Vec<Option<Vec3>> = weighted.iter().map(|&n| unit(n)).collect();
     let smooth_cos = CREASE_ANGLE.to_radians().cos();
 
@@ -52,9 +50,7 @@ struct Groups {
 
 impl Groups {
     fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count as u32).collect(),
-        }
+        Self { parent: (0..count as u32).collect() }
     }
 
     fn root(&mut self, mut corner: u32) -> u32 {
@@ -79,12 +75,7 @@ mod tests {
     /// Two triangles on the x axis; the second rises from the plane by the given angle.
     fn hinge(degrees: f64) -> Vec<[[f32; 3]; 3]> {
         let (s, c) = degrees.to_radians().sin_cos();
-        let positions = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [0.5, -1.0, 0.0],
-            [0.5, c, s],
-        ];
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, -1.0, 0.0], [0.5, c, s]];
         corner_normals(&positions, &[[0, 2, 1], [0, 1, 3]])
     }
 

@@ -41,10 +41,8 @@ impl Occlusion {
         let used = faces.iter().flatten().map(|&v| positions[v as usize]);
         let radius = used.map(|p| dot(p, p)).fold(0.0, f64::max).sqrt();
         let texel = 2.0 * radius * (1.0 + 1e-6) / SIDE as f64;
-        let maps = (0..AXES)
-            .into_par_iter()
-            .map(|k| Map::new(axis(k), positions, faces, texel))
-            .collect();
+        let maps =
+            (0..AXES).into_par_iter().map(|k| Map::new(axis(k), positions, faces, texel)).collect();
         Self { maps, texel }
     }
 
@@ -93,11 +91,7 @@ fn axis(k: usize) -> Vec3 {
 
 impl Map {
     fn new(axis: Vec3, positions: &[Vec3], faces: &[[u32; 3]], texel: f64) -> Self {
-        let aside = if axis[0].abs() < 0.6 {
-            [1.0, 0.0, 0.0]
-        } else {
-            [0.0, 0.0, 1.0]
-        };
+        let aside = if axis[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
         let right = unit(cross(aside, axis)).unwrap_or(aside);
         let mut map = Self {
             right,
@@ -106,11 +100,7 @@ impl Map {
             depths: vec![[f32::INFINITY, f32::NEG_INFINITY]; SIDE * SIDE],
         };
         let points: Vec<ScreenPoint> = positions.iter().map(|&p| map.project(p, texel)).collect();
-        let window = Window {
-            width: SIDE,
-            first_row: 0,
-            rows: SIDE,
-        };
+        let window = Window { width: SIDE, first_row: 0, rows: SIDE };
         for face in faces {
             window.scan(face.map(|v| points[v as usize]), |at, depth| {
                 let [low, high] = &mut map.depths[at];
@@ -151,14 +141,7 @@ mod tests {
     #[test]
     fn a_roof_shades_the_ground_and_not_itself() {
         // A floor, and a roof of the same size close above it.
-        let sheet = |y: f64| {
-            [
-                [-1.0, y, -1.0],
-                [-1.0, y, 1.0],
-                [1.0, y, 1.0],
-                [1.0, y, -1.0],
-            ]
-        };
+        let sheet = |y: f64| [[-1.0, y, -1.0], [-1.0, y, 1.0], [1.0, y, 1.0], [1.0, y, -1.0]];
         let positions = [sheet(-0.03), sheet(0.03)].concat();
         let faces = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
         let occlusion = Occlusion::new(&positions, &faces);

@@ -69,16 +69,9 @@ impl Paint {
                     });
                 }
                 check_finite("the colour of face", colors)?;
-                Ok(Coat::PerFace(
-                    colors.iter().map(|&c| to_linear(c)).collect(),
-                ))
+                Ok(Coat::PerFace(colors.iter().map(|&c| to_linear(c)).collect()))
             }
-            Self::Checker {
-                period,
-                checks,
-                line,
-                line_width,
-            } => {
+            Self::Checker { period, checks, line, line_width } => {
                 let uvs = scene.corner_uvs.ok_or(RenderError::MissingUvs)?;
                 check_finite("colour", &[checks[0], checks[1], *line])?;
                 if !(0.0..=1.0).contains(line_width) {
@@ -99,11 +92,7 @@ impl Paint {
                     line: to_linear(*line),
                     line_width: *line_width,
                 };
-                Ok(Coat::Checker {
-                    pattern,
-                    period,
-                    uvs,
-                })
+                Ok(Coat::Checker { pattern, period, uvs })
             }
         }
     }
@@ -147,11 +136,7 @@ pub(crate) fn signed_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 #[derive(Debug, Clone)]
 pub(crate) enum Coat<'a> {
     Plain([f32; 3]),
-    Checker {
-        pattern: Pattern,
-        period: f64,
-        uvs: &'a [[f64; 2]],
-    },
+    Checker { pattern: Pattern, period: f64, uvs: &'a [[f64; 2]] },
     PerFace(Vec<[f32; 3]>),
 }
 
@@ -159,10 +144,7 @@ pub(crate) enum Coat<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum FaceCoat<'a> {
     Plain([f32; 3]),
-    Checker {
-        pattern: &'a Pattern,
-        checks: [[f64; 2]; 3],
-    },
+    Checker { pattern: &'a Pattern, checks: [[f64; 2]; 3] },
 }
 
 impl Coat<'_> {
@@ -170,11 +152,7 @@ impl Coat<'_> {
         match self {
             Self::Plain(color) => FaceCoat::Plain(*color),
             Self::PerFace(colors) => FaceCoat::Plain(colors[face]),
-            Self::Checker {
-                pattern,
-                period,
-                uvs,
-            } => FaceCoat::Checker {
+            Self::Checker { pattern, period, uvs } => FaceCoat::Checker {
                 pattern,
                 checks: in_checks(std::array::from_fn(|k| uvs[3 * face + k]), *period),
             },
@@ -203,23 +181,13 @@ mod tests {
 
     #[test]
     fn the_default_period_puts_forty_checks_on_the_diagonal() {
-        let positions = [
-            [0.0, 0.0, 0.0],
-            [3.0, 0.0, 0.0],
-            [3.0, 4.0, 0.0],
-            [0.0, 4.0, 0.0],
-        ];
+        let positions = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0], [0.0, 4.0, 0.0]];
         let faces = [[0, 1, 2], [0, 2, 3]];
         for scale in [1e-200, 1.0, 1e200] {
             let uvs = faces
                 .as_flattened()
                 .iter()
-                .map(|&v| {
-                    [
-                        positions[v as usize][0] * scale,
-                        positions[v as usize][1] * scale,
-                    ]
-                })
+                .map(|&v| [positions[v as usize][0] * scale, positions[v as usize][1] * scale])
                 .collect::<Vec<_>>();
             let period = even_period(&uvs, &faces, &positions);
             assert!((period / scale - 5.0 / 40.0).abs() < 1e-12);

@@ -84,11 +84,7 @@ fn centres_within(low: f64, high: f64, first: usize, count: usize) -> Range<usiz
 impl Band {
     pub(crate) fn new(window: Window) -> Self {
         let samples = window.width * window.rows;
-        Self {
-            window,
-            ids: vec![EMPTY; samples],
-            depths: vec![f32::NEG_INFINITY; samples],
-        }
+        Self { window, ids: vec![EMPTY; samples], depths: vec![f32::NEG_INFINITY; samples] }
     }
 
     /// The ids of one row, counted within the band.
@@ -143,10 +139,7 @@ impl Band {
         for row in self.rows_within(a.y.min(b.y) - half_width, a.y.max(b.y) + half_width) {
             let y = self.centre(row);
             let reach = if dy.abs() > half_width * 1e-6 {
-                [
-                    along((y - half_width - a.y) / dy),
-                    along((y + half_width - a.y) / dy),
-                ]
+                [along((y - half_width - a.y) / dy), along((y + half_width - a.y) / dy)]
             } else {
                 [a.x, b.x]
             };
@@ -179,9 +172,7 @@ impl Band {
             let half = (radius * radius - dy * dy).max(0.0).sqrt();
             for column in self.columns_within(centre.x - half, centre.x + half) {
                 let dx = column as f64 + 0.5 - centre.x;
-                let height = (1.0 - (dx * dx + dy * dy) / (radius * radius))
-                    .max(0.0)
-                    .sqrt();
+                let height = (1.0 - (dx * dx + dy * dy) / (radius * radius)).max(0.0).sqrt();
                 let depth = (centre.depth + bulge * height) as f32;
                 let at = row * self.window.width + column;
                 if depth >= self.depths[at] {
@@ -202,19 +193,10 @@ pub(crate) fn range([a, b, c]: [f64; 3]) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    const WINDOW: Window = Window {
-        width: 40,
-        first_row: 0,
-        rows: 40,
-    };
+    const WINDOW: Window = Window { width: 40, first_row: 0, rows: 40 };
 
     fn point(x: f64, y: f64, depth: f64) -> ScreenPoint {
-        ScreenPoint {
-            x,
-            y,
-            depth,
-            inverse_w: 1.0,
-        }
+        ScreenPoint { x, y, depth, inverse_w: 1.0 }
     }
 
     #[test]
@@ -236,11 +218,7 @@ mod tests {
     #[test]
     fn the_nearest_depth_wins_whatever_the_order() {
         // Two planes that cross in the middle of the picture.
-        let rising = [
-            point(0.0, 0.0, 0.0),
-            point(80.0, 0.0, 80.0),
-            point(0.0, 80.0, 0.0),
-        ];
+        let rising = [point(0.0, 0.0, 0.0), point(80.0, 0.0, 80.0), point(0.0, 80.0, 0.0)];
         let level = rising.map(|p| ScreenPoint { depth: 20.0, ..p });
         for order in [[0, 1], [1, 0]] {
             let mut band = Band::new(WINDOW);
@@ -254,28 +232,14 @@ mod tests {
     #[test]
     fn lines_have_their_width_and_stay_behind_what_hides_them() {
         let mut band = Band::new(WINDOW);
-        let wall = [
-            point(20.0, -50.0, 5.0),
-            point(90.0, 20.0, 5.0),
-            point(20.0, 90.0, 5.0),
-        ];
+        let wall = [point(20.0, -50.0, 5.0), point(90.0, 20.0, 5.0), point(20.0, 90.0, 5.0)];
         band.fill_triangle(wall, 0);
-        band.draw_line(
-            [point(2.0, 10.0, 0.0), point(38.0, 10.0, 0.0)],
-            2.0,
-            7,
-            |_, _, _| 1.0,
-        );
+        band.draw_line([point(2.0, 10.0, 0.0), point(38.0, 10.0, 0.0)], 2.0, 7, |_, _, _| 1.0);
         let column: Vec<bool> = (0..40).map(|row| band.ids(row)[10] == 7).collect();
         assert_eq!(column.iter().filter(|&&c| c).count(), 4);
         assert!(column[8..12].iter().all(|&c| c));
         assert_eq!(band.ids(10)[30], 0);
-        band.draw_line(
-            [point(2.0, 10.0, 0.0), point(38.0, 10.0, 0.0)],
-            2.0,
-            7,
-            |_, _, _| 6.0,
-        );
+        band.draw_line([point(2.0, 10.0, 0.0), point(38.0, 10.0, 0.0)], 2.0, 7, |_, _, _| 6.0);
         assert_eq!(band.ids(10)[30], 7);
     }
 }

@@ -28,23 +28,14 @@ impl Scene<'_> {
             return Err(RenderError::EmptyScene);
         }
         if self.faces.len() > MAX_ELEMENTS {
-            return Err(RenderError::TooMany {
-                what: "faces",
-                found: self.faces.len(),
-            });
+            return Err(RenderError::TooMany { what: "faces", found: self.faces.len() });
         }
         if self.cones.len() > MAX_ELEMENTS {
-            return Err(RenderError::TooMany {
-                what: "cones",
-                found: self.cones.len(),
-            });
+            return Err(RenderError::TooMany { what: "cones", found: self.cones.len() });
         }
         check_finite("vertex", self.positions)?;
         self.check_vertices("face", self.faces.iter().map(|f| &f[..]))?;
-        self.check_vertices(
-            "cone",
-            self.cones.iter().map(|c| std::slice::from_ref(&c.0)),
-        )?;
+        self.check_vertices("cone", self.cones.iter().map(|c| std::slice::from_ref(&c.0)))?;
         self.check_vertices("seam", self.seams.iter().map(|s| &s[..]))?;
         self.check_vertices("feature", self.features.iter().map(|s| &s[..]))?;
         if let Some(uvs) = self.corner_uvs {
@@ -68,12 +59,7 @@ impl Scene<'_> {
         let vertices = self.positions.len();
         for (index, list) in lists.enumerate() {
             if let Some(&vertex) = list.iter().find(|&&v| v as usize >= vertices) {
-                return Err(RenderError::VertexOutOfRange {
-                    what,
-                    index,
-                    vertex,
-                    vertices,
-                });
+                return Err(RenderError::VertexOutOfRange { what, index, vertex, vertices });
             }
         }
         Ok(())

@@ -78,10 +78,7 @@ pub fn render_surface(scene: &Scene, options: &SurfaceOptions) -> Result<Image, 
     scene.check()?;
     let raster = Raster::new(options.size, options.supersampling)?;
     if !(0.0..=1.0).contains(&options.occlusion) {
-        return Err(RenderError::BadOption {
-            name: "occlusion",
-            requirement: "between 0 and 1",
-        });
+        return Err(RenderError::BadOption { name: "occlusion", requirement: "between 0 and 1" });
     }
     check_fractions([
         ("margin", options.margin),
@@ -100,10 +97,7 @@ pub(crate) fn check_fractions<const N: usize>(
     fractions: [(&'static str, f64); N],
 ) -> Result<(), RenderError> {
     match fractions.iter().find(|(_, f)| !(0.0..=0.45).contains(f)) {
-        Some((name, _)) => Err(RenderError::BadOption {
-            name,
-            requirement: "between 0 and 0.45",
-        }),
+        Some((name, _)) => Err(RenderError::BadOption { name, requirement: "between 0 and 0.45" }),
         None => Ok(()),
     }
 }
@@ -146,11 +140,7 @@ impl<'a> SurfacePicture<'a> {
         let used = scene.faces.iter().flatten();
         let normalizer = Normalizer::fit(used.map(|&v| scene.positions[v as usize]))
             .ok_or(RenderError::NoExtent { what: "positions" })?;
-        let positions: Vec<Vec3> = scene
-            .positions
-            .iter()
-            .map(|&p| normalizer.apply(p))
-            .collect();
+        let positions: Vec<Vec3> = scene.positions.iter().map(|&p| normalizer.apply(p)).collect();
         let camera = Camera::fit(
             options.view,
             options.projection,
@@ -162,26 +152,15 @@ impl<'a> SurfacePicture<'a> {
         let points: Vec<ScreenPoint> = positions.iter().map(|&p| camera.project(p)).collect();
         let at = |v: u32| points[v as usize];
         let mut on_face = vec![false; positions.len()];
-        scene
-            .faces
-            .iter()
-            .flatten()
-            .for_each(|&v| on_face[v as usize] = true);
+        scene.faces.iter().flatten().for_each(|&v| on_face[v as usize] = true);
         let seen = |v: &u32| on_face[*v as usize];
         let spans = scene.faces.iter().map(|f| {
             let (low, high) = range(f.map(|v| at(v).y));
             [(low - 1.0) as f32, (high + 1.0) as f32]
         });
-        let features = scene
-            .features
-            .iter()
-            .filter(|s| s.iter().all(seen))
-            .map(|s| (s.map(at), FEATURE));
-        let seams = scene
-            .seams
-            .iter()
-            .filter(|s| s.iter().all(seen))
-            .map(|s| (s.map(at), SEAM));
+        let features =
+            scene.features.iter().filter(|s| s.iter().all(seen)).map(|s| (s.map(at), FEATURE));
+        let seams = scene.seams.iter().filter(|s| s.iter().all(seen)).map(|s| (s.map(at), SEAM));
         let ball_radius = options.cone_radius * raster.shorter_side();
         let cones = scene.cones.iter().filter(|c| seen(&c.0));
         let balls = cones.map(|&(vertex, index)| {

@@ -11,11 +11,7 @@ pub(crate) struct Side {
 
 /// The corner after this one in its face.
 pub(crate) fn next_corner(corner: u32) -> u32 {
-    if corner % 3 == 2 {
-        corner - 2
-    } else {
-        corner + 1
-    }
+    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
 /// All sides of all faces, sorted so that the sides of one edge are neighbours.
@@ -24,10 +20,7 @@ pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
     for (face, corners) in faces.iter().enumerate() {
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            sides.push(Side {
-                vertices: [a.min(b), a.max(b)],
-                corner: (3 * face + k) as u32,
-            });
+            sides.push(Side { vertices: [a.min(b), a.max(b)], corner: (3 * face + k) as u32 });
         }
     }
     sides.sort_unstable();
@@ -44,9 +37,5 @@ pub(crate) fn matched_corners(faces: &[[u32; 3]], a: Side, b: Side) -> [[u32; 2]
     let vertex = |corner: u32| faces[corner as usize / 3][corner as usize % 3];
     let (a0, a1) = (a.corner, next_corner(a.corner));
     let (b0, b1) = (b.corner, next_corner(b.corner));
-    if vertex(a0) == vertex(b0) {
-        [[a0, b0], [a1, b1]]
-    } else {
-        [[a0, b1], [a1, b0]]
-    }
+    if vertex(a0) == vertex(b0) { [[a0, b0], [a1, b1]] } else { [[a0, b1], [a1, b0]] }
 }

@@ -19,11 +19,7 @@ pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
 }
 
 pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The unit vector along `a`; `None` for the zero vector and for one that is not finite.

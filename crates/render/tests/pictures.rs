@@ -5,21 +5,10 @@ use seamstress_render::{
     render_layout, render_surface,
 };
 
-const SQUARE: [[f64; 3]; 4] = [
-    [0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [0.0, 1.0, 0.0],
-];
+const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 const SQUARE_FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
-const SQUARE_UVS: [[f64; 2]; 6] = [
-    [0.0, 0.0],
-    [1.0, 0.0],
-    [1.0, 1.0],
-    [0.0, 0.0],
-    [1.0, 1.0],
-    [0.0, 1.0],
-];
+const SQUARE_UVS: [[f64; 2]; 6] =
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 const WHITE: [u8; 3] = [255; 3];
 
 fn square() -> Scene<'static> {
@@ -33,21 +22,10 @@ fn square() -> Scene<'static> {
 
 /// The unit cube, faces outwards.
 fn cube() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
-    let positions = (0..8_u8)
-        .map(|v| [0, 1, 2].map(|k| f64::from((v >> k) & 1)))
-        .collect();
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let faces = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
+    let positions = (0..8_u8).map(|v| [0, 1, 2].map(|k| f64::from((v >> k) & 1))).collect();
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     (positions, faces)
 }
 
@@ -77,9 +55,7 @@ fn red_green_checker(period: f64) -> Paint {
 fn channels(image: &Image, x: u32, y: u32) -> String {
     let bright = image.pixel(x, y).map(|c| c > 100);
     let letters = ['r', 'g', 'b'].into_iter().zip(bright);
-    letters
-        .map(|(letter, on)| if on { letter } else { '-' })
-        .collect()
+    letters.map(|(letter, on)| if on { letter } else { '-' }).collect()
 }
 
 #[test]
@@ -101,10 +77,7 @@ fn checks_too_fine_to_see_fade_to_their_mean() {
     assert!(first[0].abs_diff(first[1]) <= 1, "{first:?}");
     for (x, y) in [(10, 10), (33, 71), (90, 5), (64, 64)] {
         let pixel = image.pixel(x, y);
-        assert!(
-            (0..3).all(|c| pixel[c].abs_diff(first[c]) <= 2),
-            "{pixel:?}"
-        );
+        assert!((0..3).all(|c| pixel[c].abs_diff(first[c]) <= 2), "{pixel:?}");
     }
 }
 
@@ -131,16 +104,10 @@ fn a_nearer_triangle_hides_a_farther_one() {
         ([near, far].concat(), vec![green, green, red, red]),
     ];
     for (faces, colors) in stacks {
-        let scene = Scene {
-            positions: &positions,
-            faces: &faces,
-            ..Scene::default()
-        };
+        let scene = Scene { positions: &positions, faces: &faces, ..Scene::default() };
         for projection in [Projection::Orthographic, Projection::default()] {
-            let options = SurfaceOptions {
-                projection,
-                ..flat_options(Paint::PerFace(colors.clone()))
-            };
+            let options =
+                SurfaceOptions { projection, ..flat_options(Paint::PerFace(colors.clone())) };
             let image = render_surface(&scene, &options).unwrap();
             assert_eq!(channels(&image, 50, 30), "-g-");
             assert_eq!(channels(&image, 50, 70), "-g-");
@@ -159,20 +126,11 @@ fn visible_cones_have_the_colour_of_their_sign_and_hidden_ones_do_not_show() {
         ..SurfaceOptions::default()
     };
     let picture = |cones: &[(u32, i32)]| {
-        let scene = Scene {
-            positions: &positions,
-            faces: &faces,
-            cones,
-            ..Scene::default()
-        };
+        let scene = Scene { positions: &positions, faces: &faces, cones, ..Scene::default() };
         render_surface(&scene, &options).unwrap()
     };
     let count = |image: &Image, wanted: fn([u8; 3]) -> bool| {
-        image
-            .rgb8()
-            .chunks(3)
-            .filter(|p| wanted([p[0], p[1], p[2]]))
-            .count()
+        image.rgb8().chunks(3).filter(|p| wanted([p[0], p[1], p[2]])).count()
     };
     let reddish = |[r, _, b]: [u8; 3]| i32::from(r) - i32::from(b) > 60;
     let bluish = |[r, _, b]: [u8; 3]| i32::from(b) - i32::from(r) > 60;
@@ -196,21 +154,12 @@ fn seams_show_in_front_only_and_over_features() {
     let (positions, faces) = cube();
     let options = SurfaceOptions {
         line_width: 0.02,
-        palette: Palette {
-            seam: [0.0, 0.0, 1.0],
-            feature: [1.0, 0.0, 0.0],
-            ..Palette::default()
-        },
+        palette: Palette { seam: [0.0, 0.0, 1.0], feature: [1.0, 0.0, 0.0], ..Palette::default() },
         ..flat_options(Paint::Plain([0.9; 3]))
     };
     let picture = |seams: &[[u32; 2]], features: &[[u32; 2]]| {
-        let scene = Scene {
-            positions: &positions,
-            faces: &faces,
-            seams,
-            features,
-            ..Scene::default()
-        };
+        let scene =
+            Scene { positions: &positions, faces: &faces, seams, features, ..Scene::default() };
         render_surface(&scene, &options).unwrap()
     };
     // Diagonals of the back (0 to 3) and of the front (4 to 7).
@@ -240,11 +189,7 @@ fn layout_options() -> LayoutOptions {
         size: [100, 100],
         margin: 0.0,
         paint: Paint::Plain([0.0, 1.0, 0.0]),
-        palette: Palette {
-            flipped: [1.0, 0.0, 0.0],
-            seam: [0.0, 0.0, 1.0],
-            ..Palette::default()
-        },
+        palette: Palette { flipped: [1.0, 0.0, 0.0], seam: [0.0, 0.0, 1.0], ..Palette::default() },
         line_width: 0.04,
         ..LayoutOptions::default()
     }
@@ -261,11 +206,7 @@ fn flipped_triangles_are_red_and_on_top() {
     uvs[5] = [1.0, 0.0];
     let mut faces = SQUARE_FACES;
     for _ in 0..2 {
-        let scene = Scene {
-            corner_uvs: Some(&uvs),
-            faces: &faces,
-            ..square()
-        };
+        let scene = Scene { corner_uvs: Some(&uvs), faces: &faces, ..square() };
         let folded = render_layout(&scene, &layout_options()).unwrap();
         assert_eq!(channels(&folded, 70, 70), "r--");
         assert_eq!(folded.pixel(30, 30), WHITE);
@@ -278,20 +219,10 @@ fn flipped_triangles_are_red_and_on_top() {
 fn the_thinnest_flip_is_seen() {
     let mut uvs = SQUARE_UVS;
     uvs[5] = [0.5 + 1e-9, 0.5 - 1e-9];
-    let scene = Scene {
-        corner_uvs: Some(&uvs),
-        ..square()
-    };
-    let options = LayoutOptions {
-        line_width: 0.0,
-        ..layout_options()
-    };
+    let scene = Scene { corner_uvs: Some(&uvs), ..square() };
+    let options = LayoutOptions { line_width: 0.0, ..layout_options() };
     let image = render_layout(&scene, &options).unwrap();
-    let red = image
-        .rgb8()
-        .chunks(3)
-        .filter(|p| p[0] > 200 && p[1] < 120)
-        .count();
+    let red = image.rgb8().chunks(3).filter(|p| p[0] > 200 && p[1] < 120).count();
     assert!(red > 50, "{red}");
 }
 
@@ -299,16 +230,8 @@ fn the_thinnest_flip_is_seen() {
 fn islands_and_their_borders_all_show() {
     let mut uvs = SQUARE_UVS;
     uvs[3..].iter_mut().for_each(|uv| uv[0] += 3.0);
-    let scene = Scene {
-        corner_uvs: Some(&uvs),
-        cones: &[(0, 1)],
-        ..square()
-    };
-    let options = LayoutOptions {
-        size: [400, 100],
-        cone_radius: 0.08,
-        ..layout_options()
-    };
+    let scene = Scene { corner_uvs: Some(&uvs), cones: &[(0, 1)], ..square() };
+    let options = LayoutOptions { size: [400, 100], cone_radius: 0.08, ..layout_options() };
     let image = render_layout(&scene, &options).unwrap();
     assert_eq!(channels(&image, 70, 70), "-g-");
     assert_eq!(channels(&image, 330, 30), "-g-");
@@ -322,10 +245,7 @@ fn islands_and_their_borders_all_show() {
     // Without a jump, the diagonal is no seam, unless it is listed.
     let whole = render_layout(&square(), &layout_options()).unwrap();
     assert_eq!(channels(&whole, 50, 49), "-g-");
-    let listed = Scene {
-        seams: &[[2, 0]],
-        ..square()
-    };
+    let listed = Scene { seams: &[[2, 0]], ..square() };
     let listed = render_layout(&listed, &layout_options()).unwrap();
     assert_eq!(channels(&listed, 50, 49), "--b");
 }
@@ -340,16 +260,10 @@ fn the_number_of_threads_leaves_no_trace() {
         seams: &[[4, 7]],
         ..Scene::default()
     };
-    let options = SurfaceOptions {
-        size: [150, 170],
-        paint: Paint::plain(),
-        ..SurfaceOptions::default()
-    };
+    let options =
+        SurfaceOptions { size: [150, 170], paint: Paint::plain(), ..SurfaceOptions::default() };
     let with_threads = |count: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(count)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
         pool.install(|| {
             let layout = render_layout(&square(), &LayoutOptions::default());
             (render_surface(&scene, &options).unwrap(), layout.unwrap())
@@ -377,18 +291,9 @@ fn powers_of_two_change_no_pixel_and_extreme_scales_draw() {
             corner_uvs: Some(&uvs),
             ..Scene::default()
         };
-        let surface = SurfaceOptions {
-            size: [60, 60],
-            ..SurfaceOptions::default()
-        };
-        let layout = LayoutOptions {
-            size: [60, 60],
-            ..LayoutOptions::default()
-        };
-        [
-            render_surface(&scene, &surface).unwrap(),
-            render_layout(&scene, &layout).unwrap(),
-        ]
+        let surface = SurfaceOptions { size: [60, 60], ..SurfaceOptions::default() };
+        let layout = LayoutOptions { size: [60, 60], ..LayoutOptions::default() };
+        [render_surface(&scene, &surface).unwrap(), render_layout(&scene, &layout).unwrap()]
     };
     let reference = picture(1.0, 1.0);
     for e in [-660, 660] {
@@ -405,11 +310,7 @@ fn degenerate_triangles_are_skipped() {
     let options = flat_options(Paint::plain());
     let reference = render_surface(&square(), &options).unwrap();
     let faces = [&SQUARE_FACES[..], &[[0, 0, 0], [0, 1, 1], [2, 0, 2]]].concat();
-    let scene = Scene {
-        faces: &faces,
-        corner_uvs: None,
-        ..square()
-    };
+    let scene = Scene { faces: &faces, corner_uvs: None, ..square() };
     assert_eq!(render_surface(&scene, &options).unwrap(), reference);
 }
 
@@ -417,12 +318,7 @@ fn degenerate_triangles_are_skipped() {
 fn vertices_off_the_surface_do_not_count() {
     let mut positions = SQUARE.to_vec();
     positions.push([1e150, -1e200, 3.0]);
-    let scene = Scene {
-        positions: &positions,
-        cones: &[(4, 1)],
-        seams: &[[0, 4]],
-        ..square()
-    };
+    let scene = Scene { positions: &positions, cones: &[(4, 1)], seams: &[[0, 4]], ..square() };
     let options = flat_options(Paint::plain());
     let reference = render_surface(&square(), &options).unwrap();
     assert_eq!(render_surface(&scene, &options).unwrap(), reference);
@@ -444,27 +340,15 @@ fn bad_scenes_are_errors() {
     for bad in [f64::NAN, f64::INFINITY] {
         let mut positions = SQUARE;
         positions[2][1] = bad;
-        let scene = Scene {
-            positions: &positions,
-            ..square()
-        };
+        let scene = Scene { positions: &positions, ..square() };
         assert!(matches!(
             surface(&scene),
-            Err(RenderError::NotFinite {
-                what: "vertex",
-                index: 2
-            })
+            Err(RenderError::NotFinite { what: "vertex", index: 2 })
         ));
         let mut uvs = SQUARE_UVS;
         uvs[4][0] = bad;
-        let scene = Scene {
-            corner_uvs: Some(&uvs),
-            ..square()
-        };
-        assert!(matches!(
-            layout(&scene),
-            Err(RenderError::NotFinite { index: 4, .. })
-        ));
+        let scene = Scene { corner_uvs: Some(&uvs), ..square() };
+        assert!(matches!(layout(&scene), Err(RenderError::NotFinite { index: 4, .. })));
     }
     type Change = fn(&mut Scene);
     let changes: [(&str, Change); 4] = [
@@ -483,14 +367,7 @@ fn bad_scenes_are_errors() {
         }
     }
     let (a, _) = broken(|s| s.corner_uvs = Some(&[[0.0, 0.0]; 5]));
-    assert!(matches!(
-        a,
-        Err(RenderError::WrongCount {
-            expected: 6,
-            found: 5,
-            ..
-        })
-    ));
+    assert!(matches!(a, Err(RenderError::WrongCount { expected: 6, found: 5, .. })));
     let (_, b) = broken(|s| s.corner_uvs = None);
     assert!(matches!(b, Err(RenderError::MissingUvs)));
     let (a, _) = broken(|s| s.positions = &[[1.0, 2.0, 3.0]; 4]);
@@ -507,10 +384,7 @@ fn bad_options_are_errors() {
         render_surface(&square(), &options).unwrap_err()
     };
     for size in [[0, 5], [5, 0], [8193, 5], [5, u32::MAX]] {
-        let options = SurfaceOptions {
-            size,
-            ..SurfaceOptions::default()
-        };
+        let options = SurfaceOptions { size, ..SurfaceOptions::default() };
         let error = render_surface(&square(), &options);
         assert!(matches!(error, Err(RenderError::BadSize { .. })));
     }
@@ -532,24 +406,14 @@ fn bad_options_are_errors() {
         );
     }
     let error = failure(|o| o.paint = Paint::PerFace(vec![[0.0; 3]]));
-    assert!(matches!(
-        error,
-        RenderError::WrongCount {
-            expected: 2,
-            found: 1,
-            ..
-        }
-    ));
+    assert!(matches!(error, RenderError::WrongCount { expected: 2, found: 1, .. }));
     let error = failure(|o| o.palette.seam[1] = f64::NAN);
     assert!(matches!(error, RenderError::NotFinite { what: "seam", .. }));
 }
 
 #[test]
 fn the_largest_side_is_allowed() {
-    let options = SurfaceOptions {
-        size: [8192, 1],
-        supersampling: 8,
-        ..flat_options(Paint::plain())
-    };
+    let options =
+        SurfaceOptions { size: [8192, 1], supersampling: 8, ..flat_options(Paint::plain()) };
     assert_eq!(render_surface(&square(), &options).unwrap().width(), 8192);
 }

@@ -65,12 +65,7 @@ pub struct Watch<'a, 'b> {
 impl<'a, 'b> Watch<'a, 'b> {
     /// A watch over one component.
     pub fn new(observer: &'a mut Observer<'b>, component: usize, n_components: usize) -> Self {
-        let now = Progress {
-            component,
-            n_components,
-            stage: Stage::Cut,
-            fraction: 0.0,
-        };
+        let now = Progress { component, n_components, stage: Stage::Cut, fraction: 0.0 };
         Self { observer, now }
     }
 
@@ -81,6 +76,14 @@ impl<'a, 'b> Watch<'a, 'b> {
     pub fn enter(&mut self, stage: Stage) -> Result<(), Cancelled> {
         self.now.stage = stage;
         self.tick(0.0)
+    }
+
+    /// Reports that work goes on.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the observer breaks.
+    pub fn pulse(&mut self) -> Result<(), Cancelled> {
+        self.tick(self.now.fraction)
     }
 
     /// Reports the share of the stage that is done.

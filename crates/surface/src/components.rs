@@ -40,11 +40,7 @@ pub fn components(mesh: &TriMesh) -> Result<Vec<Component>, MeshError> {
                 }));
             }
             let mesh = TriMesh::from_faces(vertices.len(), &triples)?;
-            Ok(Component {
-                mesh,
-                vertices,
-                faces,
-            })
+            Ok(Component { mesh, vertices, faces })
         })
         .collect()
 }

@@ -117,21 +117,13 @@ impl Halfedge {
     /// The next half-edge of the face, counter-clockwise.
     #[inline]
     pub fn next(self) -> Self {
-        Self(if self.0 % 3 == 2 {
-            self.0 - 2
-        } else {
-            self.0 + 1
-        })
+        Self(if self.0 % 3 == 2 { self.0 - 2 } else { self.0 + 1 })
     }
 
     /// The previous half-edge of the face.
     #[inline]
     pub fn prev(self) -> Self {
-        Self(if self.0.is_multiple_of(3) {
-            self.0 + 2
-        } else {
-            self.0 - 1
-        })
+        Self(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
     }
 }
 

@@ -183,11 +183,7 @@ impl TriMesh {
     /// last face of its fan.
     pub fn outgoing(&self, v: Vertex) -> Outgoing<'_> {
         let first = self.outgoing[v];
-        Outgoing {
-            mesh: self,
-            first,
-            next: first,
-        }
+        Outgoing { mesh: self, first, next: first }
     }
 
     /// Number of faces at a vertex.
@@ -318,32 +314,13 @@ mod tests {
     fn faults_are_refused() {
         let bad = |n, faces: &[[u32; 3]]| TriMesh::from_faces(n, faces).unwrap_err();
         assert_eq!(bad(3, &[]), MeshError::NoFaces);
-        assert_eq!(
-            bad(3, &[[0, 1, 3]]),
-            MeshError::BadFace {
-                face: 0,
-                n_vertices: 3
-            }
-        );
-        assert_eq!(
-            bad(3, &[[0, 1, 1]]),
-            MeshError::BadFace {
-                face: 0,
-                n_vertices: 3
-            }
-        );
+        assert_eq!(bad(3, &[[0, 1, 3]]), MeshError::BadFace { face: 0, n_vertices: 3 });
+        assert_eq!(bad(3, &[[0, 1, 1]]), MeshError::BadFace { face: 0, n_vertices: 3 });
         assert_eq!(
             bad(4, &[[0, 1, 2], [0, 1, 3]]),
-            MeshError::RepeatedHalfedge {
-                from: 0,
-                to: 1,
-                face: 1
-            }
+            MeshError::RepeatedHalfedge { from: 0, to: 1, face: 1 }
         );
-        assert_eq!(
-            bad(5, &[[0, 1, 2], [0, 3, 4]]),
-            MeshError::NonManifoldVertex(0)
-        );
+        assert_eq!(bad(5, &[[0, 1, 2], [0, 3, 4]]), MeshError::NonManifoldVertex(0));
     }
 
     #[test]

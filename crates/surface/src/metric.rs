@@ -53,9 +53,7 @@ impl Metric {
         }
         let mean = length.iter().sum::<f64>() / length.len() as f64;
         let mean = if mean > 0.0 { mean } else { 1.0 };
-        length
-            .iter_mut()
-            .for_each(|l| *l = (*l / mean).max(MIN_RELATIVE_HEIGHT));
+        length.iter_mut().for_each(|l| *l = (*l / mean).max(MIN_RELATIVE_HEIGHT));
         let flat = mesh
             .faces()
             .map(|f| {
@@ -82,23 +80,15 @@ impl Metric {
             self.length.iter().map(|l| l.max(1e-9).powf(p)).collect();
         let mean = length.iter().sum::<f64>() / length.len() as f64;
         length.iter_mut().for_each(|l| *l /= mean);
-        let flat = mesh
-            .faces()
-            .map(|f| flat_from_lengths(f.halfedges().map(|h| length[h])))
-            .collect();
+        let flat =
+            mesh.faces().map(|f| flat_from_lengths(f.halfedges().map(|h| length[h]))).collect();
         Self::assemble(length, flat, self.unit)
     }
 
     fn assemble(length: HalfedgeData<f64>, flat: FaceData<[Complex64; 3]>, unit: f64) -> Self {
         let area = flat.iter().map(|z| 0.5 * z[1].re * z[2].im).collect();
         let angle = flat.iter().flat_map(|z| corner_angles(*z)).collect();
-        Self {
-            length,
-            flat,
-            area,
-            angle,
-            unit,
-        }
+        Self { length, flat, area, angle, unit }
     }
 
     /// Angle defect per vertex, radians: 2 pi minus the angle sum, at the boundary pi minus it.
@@ -119,10 +109,7 @@ impl Metric {
             let w = (z[k] - z[(k + 2) % 3]).conj() * (z[(k + 1) % 3] - z[(k + 2) % 3]);
             w.re / w.im
         };
-        self.flat
-            .iter()
-            .flat_map(|&z| [cot(z, 0), cot(z, 1), cot(z, 2)])
-            .collect()
+        self.flat.iter().flat_map(|&z| [cot(z, 0), cot(z, 1), cot(z, 2)]).collect()
     }
 
     /// A third of the area around each vertex.
@@ -190,11 +177,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn norm(a: [f64; 3]) -> f64 {
@@ -208,10 +191,7 @@ mod tests {
     fn square() -> (TriMesh, Vec<[f64; 3]>) {
         let mesh = TriMesh::from_faces(4, &[[0, 1, 2], [0, 2, 3]]).unwrap();
         let at = |x, y| [x, y, 0.0];
-        (
-            mesh,
-            vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)],
-        )
+        (mesh, vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)])
     }
 
     #[test]

@@ -77,10 +77,7 @@ fn flip(
 fn min_angle(corners: [[f64; 3]; 3]) -> f64 {
     let angle = |k: usize| {
         let [at, p, q] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
-        let (u, v) = (
-            [0, 1, 2].map(|i| p[i] - at[i]),
-            [0, 1, 2].map(|i| q[i] - at[i]),
-        );
+        let (u, v) = ([0, 1, 2].map(|i| p[i] - at[i]), [0, 1, 2].map(|i| q[i] - at[i]));
         let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
         let cosine = dot(u, v) / (dot(u, u) * dot(v, v)).sqrt();
         cosine.clamp(-1.0, 1.0).acos()
@@ -98,33 +95,16 @@ mod tests {
 
     #[test]
     fn flips_keep_topology() {
-        let shapes = [
-            icosphere(2),
-            torus(8, 6, 2.0, 1.0),
-            double_torus(),
-            disk_grid(6, 6),
-            annulus(9, 3),
-        ];
+        let shapes =
+            [icosphere(2), torus(8, 6, 2.0, 1.0), double_torus(), disk_grid(6, 6), annulus(9, 3)];
         for (shape, seed) in shapes.iter().zip(0..) {
             let shape = bumpy(shape, 0.1, seed);
             let flipped = random_flips(&shape, 200, seed);
             assert_eq!(topology(&flipped), topology(&shape));
             let (before, after) = (sound(&shape), sound(&flipped));
-            assert_eq!(
-                (after.n_edges, after.n_faces),
-                (before.n_edges, before.n_faces)
-            );
-            let changed = flipped
-                .faces
-                .iter()
-                .zip(&shape.faces)
-                .filter(|(a, b)| a != b)
-                .count();
-            assert!(
-                2 * changed > shape.faces.len(),
-                "{changed} of {} faces",
-                shape.faces.len()
-            );
+            assert_eq!((after.n_edges, after.n_faces), (before.n_edges, before.n_faces));
+            let changed = flipped.faces.iter().zip(&shape.faces).filter(|(a, b)| a != b).count();
+            assert!(2 * changed > shape.faces.len(), "{changed} of {} faces", shape.faces.len());
         }
     }
 

@@ -33,15 +33,8 @@ pub fn subdivide(soup: &TriangleSoup) -> TriangleSoup {
 /// Scales each axis by a factor of its own.
 #[must_use]
 pub fn stretch(soup: &TriangleSoup, factors: [f64; 3]) -> TriangleSoup {
-    let positions = soup
-        .positions
-        .iter()
-        .map(|p| [0, 1, 2].map(|i| factors[i] * p[i]))
-        .collect();
-    TriangleSoup {
-        positions,
-        faces: soup.faces.clone(),
-    }
+    let positions = soup.positions.iter().map(|p| [0, 1, 2].map(|i| factors[i] * p[i])).collect();
+    TriangleSoup { positions, faces: soup.faces.clone() }
 }
 
 /// Scales by one factor.
@@ -102,10 +95,7 @@ pub fn klee(soup: &TriangleSoup, height: f64) -> TriangleSoup {
     for &[a, b, c] in &soup.faces {
         let [p, q, r] = [a, b, c].map(|v| soup.positions[v as usize]);
         let longest = distance(p, q).max(distance(q, r)).max(distance(r, p));
-        let (u, v) = (
-            [0, 1, 2].map(|i| q[i] - p[i]),
-            [0, 1, 2].map(|i| r[i] - p[i]),
-        );
+        let (u, v) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
         let normal = [0, 1, 2].map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             u[j] * v[k] - u[k] * v[j]
@@ -125,9 +115,7 @@ pub fn disjoint_union(soups: &[TriangleSoup]) -> TriangleSoup {
     for soup in soups {
         let offset = union.positions.len() as u32;
         union.positions.extend(&soup.positions);
-        union
-            .faces
-            .extend(soup.faces.iter().map(|face| face.map(|v| v + offset)));
+        union.faces.extend(soup.faces.iter().map(|face| face.map(|v| v + offset)));
     }
     union
 }
@@ -140,27 +128,16 @@ pub fn remove_faces(soup: &TriangleSoup, faces: &[u32]) -> TriangleSoup {
     for &face in faces {
         is_removed[face as usize] = true;
     }
-    let kept = || {
-        soup.faces
-            .iter()
-            .zip(&is_removed)
-            .filter(|&(_, &removed)| !removed)
-    };
+    let kept = || soup.faces.iter().zip(&is_removed).filter(|&(_, &removed)| !removed);
     for &v in kept().flat_map(|(face, _)| face) {
         new_vertex[v as usize] = Some(0);
     }
     let mut positions = Vec::new();
-    for (new, &p) in new_vertex
-        .iter_mut()
-        .zip(&soup.positions)
-        .filter(|(new, _)| new.is_some())
-    {
+    for (new, &p) in new_vertex.iter_mut().zip(&soup.positions).filter(|(new, _)| new.is_some()) {
         *new = Some(positions.len() as u32);
         positions.push(p);
     }
-    let faces = kept()
-        .map(|(face, _)| face.map(|v| new_vertex[v as usize].unwrap()))
-        .collect();
+    let faces = kept().map(|(face, _)| face.map(|v| new_vertex[v as usize].unwrap())).collect();
     TriangleSoup { positions, faces }
 }
 
@@ -188,10 +165,7 @@ pub fn with_boundaries(soup: &TriangleSoup, n: usize, seed: u64) -> TriangleSoup
             continue;
         }
         // Neighbours of the rim are taken too: no face may have all its corners on rims.
-        for v in rim()
-            .flat_map(|v| &stars[v as usize])
-            .flat_map(|&f| soup.faces[f as usize])
-        {
+        for v in rim().flat_map(|v| &stars[v as usize]).flat_map(|&f| soup.faces[f as usize]) {
             is_taken[v as usize] = true;
         }
         holes.extend(star);
@@ -249,10 +223,7 @@ mod tests {
 
     #[test]
     fn relabelling_keeps_all_facts() {
-        for (shape, seed) in [slab_with_holes(3), disk_grid(5, 4), octahedron()]
-            .iter()
-            .zip(1..)
-        {
+        for (shape, seed) in [slab_with_holes(3), disk_grid(5, 4), octahedron()].iter().zip(1..) {
             let other = relabel(shape, seed);
             assert_ne!(other.faces, shape.faces);
             assert_eq!(sound(&other), sound(shape));
@@ -273,11 +244,8 @@ mod tests {
     #[test]
     fn a_union_counts_its_parts() {
         let facts = sound(&disjoint_union(&[cube(), disk_grid(2, 2), double_torus()]));
-        let parts: Vec<_> = facts
-            .components
-            .iter()
-            .map(|c| (c.genus, c.boundary_loops, c.n_faces))
-            .collect();
+        let parts: Vec<_> =
+            facts.components.iter().map(|c| (c.genus, c.boundary_loops, c.n_faces)).collect();
         let n = double_torus().faces.len();
         assert_eq!(parts, [(Some(0), 0, 12), (Some(0), 1, 8), (Some(2), 0, n)]);
     }

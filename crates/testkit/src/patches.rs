@@ -85,10 +85,7 @@ pub fn cylinder(n: u32, m: u32) -> TriangleSoup {
 /// cone of `valence` ≥ 3 corners; open, half a cone whose apex is on the boundary.
 #[must_use]
 pub fn fan(valence: u32, height: f64, is_closed: bool) -> TriangleSoup {
-    assert!(
-        valence >= if is_closed { 3 } else { 1 },
-        "too few triangles for a fan"
-    );
+    assert!(valence >= if is_closed { 3 } else { 1 }, "too few triangles for a fan");
     let n_rim = valence + u32::from(!is_closed);
     let turn = if is_closed { TAU } else { 0.5 * TAU };
     let rim = |i: u32| {
@@ -98,10 +95,7 @@ pub fn fan(valence: u32, height: f64, is_closed: bool) -> TriangleSoup {
     let mut positions = vec![[0.0, 0.0, height]];
     positions.extend((0..n_rim).map(rim));
     let triangle = |i: u32| [0, 1 + i, 1 + (i + 1) % n_rim];
-    TriangleSoup {
-        positions,
-        faces: (0..valence).map(triangle).collect(),
-    }
+    TriangleSoup { positions, faces: (0..valence).map(triangle).collect() }
 }
 
 #[cfg(test)]
@@ -111,12 +105,7 @@ mod tests {
 
     #[test]
     fn disks() {
-        for disk in [
-            disk_grid(1, 1),
-            disk_grid(5, 3),
-            saddle(6),
-            monkey_saddle(6),
-        ] {
+        for disk in [disk_grid(1, 1), disk_grid(5, 3), saddle(6), monkey_saddle(6)] {
             assert_eq!(topology(&disk), (1, 0, 1));
         }
         assert_eq!(disk_grid(5, 3).faces.len(), 30);
@@ -124,12 +113,7 @@ mod tests {
 
     #[test]
     fn bands() {
-        for shape in [
-            annulus(3, 1),
-            annulus(12, 4),
-            cylinder(3, 1),
-            cylinder(9, 5),
-        ] {
+        for shape in [annulus(3, 1), annulus(12, 4), cylinder(3, 1), cylinder(9, 5)] {
             assert_eq!(topology(&shape), (0, 0, 2));
         }
     }
@@ -146,12 +130,7 @@ mod tests {
 
     #[test]
     fn flat_shapes_look_up() {
-        for flat in [
-            disk_grid(4, 4),
-            annulus(7, 2),
-            fan(5, 0.0, true),
-            fan(5, 1.0, false),
-        ] {
+        for flat in [disk_grid(4, 4), annulus(7, 2), fan(5, 0.0, true), fan(5, 1.0, false)] {
             for face in &flat.faces {
                 let [a, b, c] = face.map(|v| flat.positions[v as usize]);
                 assert!((b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]));

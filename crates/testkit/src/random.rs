@@ -15,12 +15,7 @@ pub fn random_surface(seed: u64) -> TriangleSoup {
     let is_round = rng.below(2) == 1;
     let mut surface = match (genus, is_round) {
         (0, true) => icosphere(2 + rng.below(2) as u32),
-        (1, true) => torus(
-            10 + rng.below(20) as u32,
-            8 + rng.below(15) as u32,
-            2.0,
-            0.8,
-        ),
+        (1, true) => torus(10 + rng.below(20) as u32, 8 + rng.below(15) as u32, 2.0, 0.8),
         _ => fine_slab(genus, &mut rng),
     };
     let factors = [(); 3].map(|()| 0.5 + 1.5 * rng.unit());
@@ -58,11 +53,7 @@ mod tests {
             assert!((100..=2000).contains(&surface.faces.len()), "seed {seed}");
             kinds.insert((genus, loops));
         }
-        assert_eq!(
-            kinds.len(),
-            16,
-            "every genus comes with every number of loops"
-        );
+        assert_eq!(kinds.len(), 16, "every genus comes with every number of loops");
         assert_eq!(random_surface(17), random_surface(17));
     }
 }

@@ -5,21 +5,13 @@ use seamstress_surface::soup::TriangleSoup;
 use std::f64::consts::{PI, TAU};
 
 fn soup(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriangleSoup {
-    TriangleSoup {
-        positions: positions.to_vec(),
-        faces: faces.to_vec(),
-    }
+    TriangleSoup { positions: positions.to_vec(), faces: faces.to_vec() }
 }
 
 /// The regular tetrahedron on four corners of the cube `[-1, 1]³`.
 #[must_use]
 pub fn tetrahedron() -> TriangleSoup {
-    let positions = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ];
+    let positions = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     soup(&positions, &[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
 }
 
@@ -119,14 +111,8 @@ mod tests {
 
     #[test]
     fn solids_are_spheres_that_look_outwards() {
-        let solids = [
-            tetrahedron(),
-            cube(),
-            octahedron(),
-            icosahedron(),
-            icosphere(2),
-            uv_sphere(7, 5),
-        ];
+        let solids =
+            [tetrahedron(), cube(), octahedron(), icosahedron(), icosphere(2), uv_sphere(7, 5)];
         for solid in solids {
             assert_eq!(topology(&solid), (2, 0, 0));
             assert!(six_volumes(&solid) > 0.0);
@@ -142,10 +128,7 @@ mod tests {
         for regular in [tetrahedron(), octahedron(), icosahedron()] {
             let facts = sound(&regular);
             assert!((facts.min_angle.unwrap() - FRAC_PI_3).abs() < 1e-14);
-            let (short, long) = (
-                facts.min_edge_length.unwrap(),
-                facts.max_edge_length.unwrap(),
-            );
+            let (short, long) = (facts.min_edge_length.unwrap(), facts.max_edge_length.unwrap());
             assert!(long - short < 1e-14);
         }
     }

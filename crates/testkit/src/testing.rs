@@ -14,11 +14,7 @@ pub(crate) fn sound(soup: &TriangleSoup) -> Facts {
 pub(crate) fn topology(soup: &TriangleSoup) -> (i64, usize, usize) {
     let facts = sound(soup);
     assert_eq!(facts.components.len(), 1);
-    (
-        facts.euler_characteristic(),
-        facts.genus().unwrap(),
-        facts.boundary_loops(),
-    )
+    (facts.euler_characteristic(), facts.genus().unwrap(), facts.boundary_loops())
 }
 
 /// Six times the volume enclosed, positive if the faces look outwards.

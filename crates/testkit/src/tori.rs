@@ -15,11 +15,7 @@ pub fn torus(n: u32, m: u32, ring: f64, tube: f64) -> TriangleSoup {
         for j in 0..m {
             let across = TAU * f64::from(j) / f64::from(m);
             let radius = ring + tube * across.cos();
-            positions.push([
-                radius * around.cos(),
-                radius * around.sin(),
-                tube * across.sin(),
-            ]);
+            positions.push([radius * around.cos(), radius * around.sin(), tube * across.sin()]);
         }
     }
     let at = |i: u32, j: u32| (i % n) * m + j % m;
@@ -59,11 +55,7 @@ mod tests {
 
     #[test]
     fn tori_have_genus_one() {
-        for shape in [
-            torus(3, 3, 1.0, 0.3),
-            torus(12, 8, 2.0, 0.5),
-            seven_vertex_torus(),
-        ] {
+        for shape in [torus(3, 3, 1.0, 0.3), torus(12, 8, 2.0, 0.5), seven_vertex_torus()] {
             assert_eq!(topology(&shape), (0, 1, 0));
         }
     }
@@ -78,9 +70,6 @@ mod tests {
     #[test]
     fn seven_vertices_are_all_neighbours() {
         let facts = sound(&seven_vertex_torus());
-        assert_eq!(
-            (facts.n_vertices, facts.n_edges, facts.n_faces),
-            (7, 21, 14)
-        );
+        assert_eq!((facts.n_vertices, facts.n_edges, facts.n_faces), (7, 21, 14));
     }
 }

@@ -69,9 +69,7 @@ pub fn double_torus() -> TriangleSoup {
 #[must_use]
 pub fn l_bracket() -> TriangleSoup {
     let arms = [[0, 0], [1, 0], [2, 0], [0, 1], [0, 2]];
-    let cells = arms
-        .iter()
-        .flat_map(|&[x, z]| (0..2).map(move |y| [x, y, z]));
+    let cells = arms.iter().flat_map(|&[x, z]| (0..2).map(move |y| [x, y, z]));
     voxel_surface(&cells.collect::<Vec<_>>())
 }
 
@@ -107,9 +105,6 @@ mod tests {
         let is_edge = |fault: &Fault| matches!(fault, Fault::NonManifoldEdge { faces, .. } if faces.len() == 4);
         assert_eq!(faults.iter().filter(|fault| is_edge(fault)).count(), 1);
         let faults = check(&voxel_surface(&[[0, 0, 0], [1, 1, 1]])).faults;
-        assert!(matches!(
-            faults[..],
-            [Fault::NonManifoldVertex { fans: 2, .. }]
-        ));
+        assert!(matches!(faults[..], [Fault::NonManifoldVertex { fans: 2, .. }]));
     }
 }

@@ -56,10 +56,7 @@ fn units_change_nothing_but_lengths() {
         assert_eq!(scaled.faults, []);
         let ratio = scaled.facts.max_edge_length.unwrap() / one.facts.max_edge_length.unwrap();
         assert!((ratio / factor - 1.0).abs() < 1e-12);
-        let (a, b) = (
-            one.facts.min_angle.unwrap(),
-            scaled.facts.min_angle.unwrap(),
-        );
+        let (a, b) = (one.facts.min_angle.unwrap(), scaled.facts.min_angle.unwrap());
         assert!((a - b).abs() < 1e-12);
     }
 }
@@ -92,18 +89,10 @@ fn a_soup_without_errors_is_exactly_what_makes_a_mesh() {
         let soup = corrupted(seed);
         let report = check(&soup);
         let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces);
-        assert_eq!(
-            report.is_mesh(),
-            mesh.is_ok(),
-            "seed {seed}: {:?}, {mesh:?}",
-            report.faults
-        );
+        assert_eq!(report.is_mesh(), mesh.is_ok(), "seed {seed}: {:?}, {mesh:?}", report.faults);
         n_meshes += usize::from(mesh.is_ok());
     }
-    assert!(
-        (500..2500).contains(&n_meshes),
-        "{n_meshes} of 3000: the test has both sides"
-    );
+    assert!((500..2500).contains(&n_meshes), "{n_meshes} of 3000: the test has both sides");
 }
 
 #[test]
@@ -150,11 +139,7 @@ fn harmless_damage_is_undone() {
         // Copies and reverses, of faces inside and at the boundary.
         for _ in 0..5 {
             let [a, b, c] = damaged.faces[rng.below(surface.faces.len())];
-            damaged.faces.push(if rng.below(2) == 0 {
-                [a, b, c]
-            } else {
-                [b, a, c]
-            });
+            damaged.faces.push(if rng.below(2) == 0 { [a, b, c] } else { [b, a, c] });
         }
         assert!(!check(&damaged).is_mesh());
         assert_eq!(repair(damaged).soup.faces, surface.faces, "seed {seed}");
@@ -190,10 +175,7 @@ fn quads_of_a_mesh_come_back_as_triangles() {
         let done = triangulate(&surface.positions, slices).unwrap();
         assert_eq!(done.faces.len(), surface.faces.len());
         assert!(done.notes.quads > 0);
-        let split = TriangleSoup {
-            positions: surface.positions.clone(),
-            faces: done.faces,
-        };
+        let split = TriangleSoup { positions: surface.positions.clone(), faces: done.faces };
         let report = check(&split);
         assert!(report.is_mesh(), "seed {seed}");
         assert_eq!(topology(&report.facts), topology(&check(&surface).facts));

@@ -12,9 +12,7 @@ const THREADS: usize = 2;
 /// The folder: `bad` in the meshes beside the repository, or where `SEAMSTRESS_MESHES` says.
 fn bad_folder() -> PathBuf {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    std::env::var_os("SEAMSTRESS_MESHES")
-        .map_or(beside, PathBuf::from)
-        .join("bad")
+    std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from).join("bad")
 }
 
 #[test]
@@ -50,10 +48,7 @@ fn bad_files_end_in_a_map_or_a_message() {
 fn try_file(file: &Path) -> Result<(), String> {
     let folder = Folder::new();
     let path = file.to_str().ok_or("a name that is not UTF-8")?;
-    let name = file
-        .file_name()
-        .and_then(|name| name.to_str())
-        .unwrap_or(path);
+    let name = file.file_name().and_then(|name| name.to_str()).unwrap_or(path);
     let run = wait_patiently(folder.start(&["map", path, "-o", "map.obj", "--threads", "1"]))
         .ok_or_else(|| format!("{name}: still running after {PATIENCE:?}"))?;
     println!("{name}: {:?}", run.code);

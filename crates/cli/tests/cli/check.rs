@@ -20,10 +20,7 @@ fn spoil(folder: &Folder, keyword: &str, n: usize, change: impl Fn(&str) -> Stri
     let old = format!("{keyword} {}", lines_of(&map, keyword)[n]);
     let new = format!("{keyword} {}", change(lines_of(&map, keyword)[n]));
     assert_ne!(old, new);
-    folder.write(
-        "spoilt.obj",
-        map.replacen(&format!("{old}\n"), &format!("{new}\n"), 1),
-    );
+    folder.write("spoilt.obj", map.replacen(&format!("{old}\n"), &format!("{new}\n"), 1));
     let run = folder.expect(1, &["check", "in.obj", "spoilt.obj"]);
     assert!(run.stdout.contains(message), "{message} in {}", run.stdout);
     assert!(run.stdout.contains("certificate  failed"), "{}", run.stdout);
@@ -101,17 +98,10 @@ fn an_open_seam_is_named_unless_tolerated() {
     spoil(&folder, "vt", at, shift, "does not close: off by");
     let run = folder.run(&["check", "in.obj", "spoilt.obj"]);
     let is_named = run.stdout.lines().any(|line| {
-        let edge = line
-            .split("edge ")
-            .nth(1)
-            .and_then(|rest| rest.split(' ').next());
+        let edge = line.split("edge ").nth(1).and_then(|rest| rest.split(' ').next());
         edge.is_some_and(|edge| edge.split('-').any(|end| end == name.to_string()))
     });
-    assert!(
-        run.stdout.contains("seams        open by up to"),
-        "{}",
-        run.stdout
-    );
+    assert!(run.stdout.contains("seams        open by up to"), "{}", run.stdout);
     assert!(is_named, "vertex {name} in {}", run.stdout);
     folder.expect(0, &["check", "in.obj", "spoilt.obj", "--tolerance", "1e-4"]);
 }
@@ -121,10 +111,7 @@ fn other_counts_are_told() {
     let folder = mapped();
     folder.write_obj("other.obj", &testkit::icosahedron());
     let run = folder.expect(1, &["check", "other.obj", "map.obj"]);
-    assert!(
-        run.stdout
-            .contains("the map has 42 vertices, the source 12")
-    );
+    assert!(run.stdout.contains("the map has 42 vertices, the source 12"));
     assert!(run.stdout.contains("the map has 80 faces, the source 20"));
 }
 
@@ -132,10 +119,7 @@ fn other_counts_are_told() {
 fn a_map_needs_texture_coordinates_and_triangles() {
     let folder = mapped();
     let run = folder.expect(1, &["check", "in.obj", "in.obj"]);
-    assert!(
-        run.stderr.starts_with("error: in.obj: not a map"),
-        "{run:?}"
-    );
+    assert!(run.stderr.starts_with("error: in.obj: not a map"), "{run:?}");
     let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
     folder.write("quad.obj", format!("{quad}f 1/1 2/2 3/3 4/4\n"));
     let run = folder.expect(1, &["check", "in.obj", "quad.obj"]);
@@ -147,10 +131,7 @@ fn meshes_without_faults_pass() {
     let folder = Folder::new();
     folder.write_obj("torus.obj", &testkit::torus(12, 6, 1.0, 0.4));
     let run = folder.expect(0, &["check", "torus.obj"]);
-    assert!(
-        run.stdout
-            .contains("1 component, genus 1, closed, Euler characteristic 0")
-    );
+    assert!(run.stdout.contains("1 component, genus 1, closed, Euler characteristic 0"));
     let run = folder.expect(0, &["check", "torus.obj", "--json"]);
     let value: Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!(value["is_mesh"], true);
@@ -164,11 +145,7 @@ fn warnings_are_no_fault() {
     soup.positions.push([2.0; 3]);
     folder.write_obj("in.obj", &soup);
     let run = folder.expect(0, &["check", "in.obj"]);
-    assert!(
-        run.stdout
-            .contains("warning      vertex 8 belongs to no face"),
-        "{run:?}"
-    );
+    assert!(run.stdout.contains("warning      vertex 8 belongs to no face"), "{run:?}");
     let run = folder.expect(0, &["map", "in.obj", "-o", "map.obj"]);
     assert_eq!(run.stderr, "warning: vertex 8 belongs to no face\n");
     folder.expect(0, &["check", "in.obj", "map.obj"]);
@@ -182,16 +159,8 @@ fn many_faults_are_cut_short_for_people_only() {
     folder.write_obj("in.obj", &soup);
     let run = folder.expect(1, &["check", "in.obj"]);
     assert_eq!(run.stdout.matches("is a copy of").count(), 20);
-    assert!(
-        run.stdout.contains("fault        and 10 more"),
-        "{}",
-        run.stdout
-    );
-    assert!(
-        run.stdout.contains("`--repair` can mend its 30 faults"),
-        "{}",
-        run.stdout
-    );
+    assert!(run.stdout.contains("fault        and 10 more"), "{}", run.stdout);
+    assert!(run.stdout.contains("`--repair` can mend its 30 faults"), "{}", run.stdout);
     let run = folder.expect(1, &["check", "in.obj", "--json"]);
     let value: Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!(value["faults"].as_array().unwrap().len(), 30);
@@ -206,11 +175,7 @@ fn faults_name_the_polygons_of_the_file() {
     let quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 0 0 1\nv 0 -1 0\n";
     folder.write("fin.obj", format!("{quads}f 1 2 3 4\nf 2 1 6 5\nf 2 1 7\n"));
     let run = folder.expect(1, &["check", "fin.obj"]);
-    assert!(
-        run.stdout.contains("edge 0-1 has 3 faces: 0, 1, 2"),
-        "{}",
-        run.stdout
-    );
+    assert!(run.stdout.contains("edge 0-1 has 3 faces: 0, 1, 2"), "{}", run.stdout);
 }
 
 #[test]

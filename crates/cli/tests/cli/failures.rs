@@ -14,10 +14,7 @@ fn help_and_version() {
         }
     }
     let version = folder.expect(0, &["--version"]).stdout;
-    assert_eq!(
-        version,
-        format!("seamstress {}\n", env!("CARGO_PKG_VERSION"))
-    );
+    assert_eq!(version, format!("seamstress {}\n", env!("CARGO_PKG_VERSION")));
 }
 
 #[test]
@@ -45,10 +42,7 @@ fn faults_are_1_and_name_elements() {
         let arguments = [&["map", "fan.obj", "-o", "a.obj"], repair].concat();
         let run = folder.expect(1, &arguments);
         assert!(run.stderr.starts_with("error: fan.obj: "), "{run:?}");
-        assert!(
-            run.stderr.contains("edge 0-1 has 3 faces: 0, 1, 2"),
-            "{run:?}"
-        );
+        assert!(run.stderr.contains("edge 0-1 has 3 faces: 0, 1, 2"), "{run:?}");
         assert!(run.stderr.contains("seamstress check fan.obj"), "{run:?}");
     }
     assert_eq!(folder.names(), ["fan.obj"]);
@@ -136,9 +130,7 @@ fn an_interrupt_is_4_and_leaves_nothing() {
     folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
     let child = folder.start(&["map", "in.obj", "-o", "a.obj"]);
     std::thread::sleep(Duration::from_millis(500));
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.unwrap().success());
     let run = wait(child);
     assert_eq!(run.code, Some(4), "{run:?}");

@@ -116,17 +116,13 @@ pub(crate) fn off(soup: &TriangleSoup) -> String {
 /// The positions and faces of an OBJ file, as text.
 pub(crate) fn lines_of<'a>(obj: &'a str, keyword: &str) -> Vec<&'a str> {
     let prefix = format!("{keyword} ");
-    obj.lines()
-        .filter_map(|line| line.strip_prefix(&prefix))
-        .collect()
+    obj.lines().filter_map(|line| line.strip_prefix(&prefix)).collect()
 }
 
 /// The faces of an OBJ file without texture coordinates.
 pub(crate) fn bare_faces(obj: &str) -> Vec<String> {
     let bare = |line: &str| {
-        let corners = line
-            .split(' ')
-            .map(|corner| corner.split('/').next().unwrap());
+        let corners = line.split(' ').map(|corner| corner.split('/').next().unwrap());
         corners.collect::<Vec<_>>().join(" ")
     };
     lines_of(obj, "f").into_iter().map(bare).collect()

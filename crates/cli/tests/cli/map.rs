@@ -106,16 +106,7 @@ fn the_bytes_depend_on_nothing_but_the_input() {
     let runs = [("a", "1"), ("b", "2"), ("c", "2")];
     for (name, threads) in runs {
         let output = format!("{name}.obj");
-        let arguments = [
-            "map",
-            "in.obj",
-            "-o",
-            &output,
-            "--pictures",
-            name,
-            "--threads",
-            threads,
-        ];
+        let arguments = ["map", "in.obj", "-o", &output, "--pictures", name, "--threads", threads];
         folder.expect(0, &arguments);
     }
     let read =
@@ -159,17 +150,10 @@ fn repairs_are_listed_and_the_map_is_of_the_repaired_mesh() {
     soup.positions.push([9.0; 3]);
     folder.write_obj("in.obj", &soup);
     let refused = folder.expect(1, &["map", "in.obj", "-o", "map.obj"]);
-    assert!(
-        refused.stderr.contains("face 8 is a copy of face 0"),
-        "{refused:?}"
-    );
+    assert!(refused.stderr.contains("face 8 is a copy of face 0"), "{refused:?}");
     assert!(refused.stderr.contains("add `--repair`"), "{refused:?}");
-    let run = folder.expect(
-        0,
-        &[
-            "map", "in.obj", "-o", "map.obj", "--repair", "--report", "r.json",
-        ],
-    );
+    let run =
+        folder.expect(0, &["map", "in.obj", "-o", "map.obj", "--repair", "--report", "r.json"]);
     for line in [
         "repair: dropped face 8, a copy of face 0",
         "repair: turned over face 3",

@@ -1,9 +1,7 @@
 use super::*;
 
 fn read(text: &str) -> PolygonMesh {
-    parse(text.as_bytes())
-        .map_err(|fault| fault.named("a.obj").to_string())
-        .unwrap()
+    parse(text.as_bytes()).map_err(|fault| fault.named("a.obj").to_string()).unwrap()
 }
 
 fn fault(text: &str) -> String {
@@ -19,10 +17,7 @@ fn all_forms_of_corners() {
     assert_eq!(mesh.polygons.len(), 5);
     assert!(mesh.polygons.iter().all(|polygon| polygon == [0, 1, 2]));
     assert_eq!(mesh.corner_uvs, None);
-    let incomplete = Note::TextureCoordinatesIncomplete {
-        without: 10,
-        corners: 15,
-    };
+    let incomplete = Note::TextureCoordinatesIncomplete { without: 10, corners: 15 };
     assert_eq!(mesh.notes, [incomplete, Note::NormalsIgnored { count: 1 }]);
 }
 
@@ -41,28 +36,17 @@ fn every_line_end_tab_comment_and_continuation() {
             "3",
         ];
         let mesh = read(&text.join(end));
-        assert_eq!(
-            mesh.positions,
-            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-        );
+        assert_eq!(mesh.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         assert_eq!(mesh.polygons.get(0), [0, 1, 2]);
         assert_eq!(mesh.notes, []);
         let broken = format!("{}{end}f 1 2{end}", text.join(end));
-        assert_eq!(
-            fault(&broken),
-            "a, line 10: a face needs at least 3 corners, found 2"
-        );
+        assert_eq!(fault(&broken), "a, line 10: a face needs at least 3 corners, found 2");
     }
 }
 
 #[test]
 fn names_may_end_in_a_backslash() {
-    assert_eq!(
-        read(&format!("mtllib C:\\m\\\n{POINTS}f 1 2 3"))
-            .positions
-            .len(),
-        3
-    );
+    assert_eq!(read(&format!("mtllib C:\\m\\\n{POINTS}f 1 2 3")).positions.len(), 3);
 }
 
 #[test]
@@ -70,31 +54,17 @@ fn faces_may_precede_vertices() {
     let mesh = read(&format!("f 1 2 3\n{POINTS}f -3 -2 -1\nv 5 5 5"));
     assert_eq!(mesh.polygons.corners(), [0, 1, 2, 0, 1, 2]);
     let late = fault(&format!("f 1 2 3\nf 1 2 4\n{POINTS}"));
-    assert_eq!(
-        late,
-        "a, line 2: vertex index 4 is out of range: the file has 3 vertices"
-    );
+    assert_eq!(late, "a, line 2: vertex index 4 is out of range: the file has 3 vertices");
 }
 
 #[test]
 fn lines_are_split_and_points_noted() {
-    let mesh = read(&format!(
-        "{POINTS}f 1 2 3\nl 1/1 2/2 -1\nl 2\np 1 2\ncurv 0 1 \\\n1 2\nshape x"
-    ));
+    let mesh =
+        read(&format!("{POINTS}f 1 2 3\nl 1/1 2/2 -1\nl 2\np 1 2\ncurv 0 1 \\\n1 2\nshape x"));
     assert_eq!(mesh.lines, [[0, 1], [1, 2]]);
-    let points = Note::ElementsIgnored {
-        kind: "point".into(),
-        count: 3,
-    };
-    let curves = Note::ElementsIgnored {
-        kind: "free-form curve or surface".into(),
-        count: 1,
-    };
-    let unknown = Note::UnknownKeywords {
-        count: 1,
-        first_line: 10,
-        keyword: "`shape`".into(),
-    };
+    let points = Note::ElementsIgnored { kind: "point".into(), count: 3 };
+    let curves = Note::ElementsIgnored { kind: "free-form curve or surface".into(), count: 1 };
+    let unknown = Note::UnknownKeywords { count: 1, first_line: 10, keyword: "`shape`".into() };
     assert_eq!(mesh.notes, [points, curves, unknown]);
 }
 
@@ -111,13 +81,7 @@ fn texture_coordinates_are_kept_if_complete() {
     assert_eq!(mesh.notes, [Note::TextureCoordinatesNotFinite { line: 4 }]);
     for face in ["f 1/1 2/2 3/3", "f 1/-1 2/-1 3/-1"] {
         let mesh = read(&format!("{POINTS}{face}"));
-        assert_eq!(
-            mesh.notes,
-            [Note::TextureCoordinatesIncomplete {
-                without: 3,
-                corners: 3
-            }]
-        );
+        assert_eq!(mesh.notes, [Note::TextureCoordinatesIncomplete { without: 3, corners: 3 }]);
     }
     let range = fault(&format!("{POINTS}{uv}f 1/1 2/2 3/3"));
     assert_eq!(
@@ -140,34 +104,16 @@ fn a_repeated_vertex_is_left_to_later_checks() {
 #[test]
 fn faults_name_their_line() {
     let cases = [
-        (
-            "v 1 2\n",
-            "line 1: expected three coordinates after `v`, found the end of the line",
-        ),
-        (
-            "v 1 abc 2",
-            "line 1: expected three coordinates after `v`, found `abc`",
-        ),
+        ("v 1 2\n", "line 1: expected three coordinates after `v`, found the end of the line"),
+        ("v 1 abc 2", "line 1: expected three coordinates after `v`, found `abc`"),
         (
             "v 1,5 0 0",
             "line 1: expected three coordinates after `v`, found `1,5` (write decimals with a point)",
         ),
-        (
-            "\nv 1 1e999 0",
-            "line 2: expected a finite number, found `1e999`",
-        ),
-        (
-            "v -nan(ind) 0 0",
-            "line 1: expected a finite number, found `-nan(ind)`",
-        ),
-        (
-            "v 0 0 0\nf 1 0 1",
-            "line 2: vertex index 0 is out of range: OBJ counts from 1",
-        ),
-        (
-            "v 0 0 0\nf 1 1 -2",
-            "line 2: vertex index -2 is out of range: 1 vertex precedes it",
-        ),
+        ("\nv 1 1e999 0", "line 2: expected a finite number, found `1e999`"),
+        ("v -nan(ind) 0 0", "line 1: expected a finite number, found `-nan(ind)`"),
+        ("v 0 0 0\nf 1 0 1", "line 2: vertex index 0 is out of range: OBJ counts from 1"),
+        ("v 0 0 0\nf 1 1 -2", "line 2: vertex index -2 is out of range: 1 vertex precedes it"),
         (
             "v 0 0 0\nf 1 1 99999999999999999999",
             "line 2: vertex index 99999999999999999999 is out of range: the file has 1 vertex",
@@ -180,22 +126,13 @@ fn faults_name_their_line() {
             "v 0 0 0\nf 1 1 1/2/3/4",
             "line 2: expected a face corner such as `3`, `3/1` or `3/1/2`, found `1/2/3/4`",
         ),
-        (
-            "v 0 0 0\nf\n",
-            "line 2: a face needs at least 3 corners, found 0",
-        ),
+        ("v 0 0 0\nf\n", "line 2: a face needs at least 3 corners, found 0"),
         (
             "lorem\nipsum",
             "line 1: expected an OBJ statement such as `v` or `f` (the file has none), found `lorem`",
         ),
-        (
-            "v 0 0 0\n\x07x",
-            "line 2: expected an OBJ statement, found `\\u{7}x`",
-        ),
-        (
-            "v 0 0 0\nv 0 \0",
-            "byte 12: expected text, found a NUL byte in line 2",
-        ),
+        ("v 0 0 0\n\x07x", "line 2: expected an OBJ statement, found `\\u{7}x`"),
+        ("v 0 0 0\nv 0 \0", "byte 12: expected text, found a NUL byte in line 2"),
     ];
     for (text, expected) in cases {
         assert_eq!(fault(text), format!("a, {expected}"));

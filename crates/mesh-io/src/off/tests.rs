@@ -1,9 +1,7 @@
 use super::*;
 
 fn read(text: &str) -> PolygonMesh {
-    parse(text.as_bytes())
-        .map_err(|fault| fault.named("a.off").to_string())
-        .unwrap()
+    parse(text.as_bytes()).map_err(|fault| fault.named("a.off").to_string()).unwrap()
 }
 
 fn fault(text: &str) -> String {
@@ -39,10 +37,7 @@ fn colours_are_noted() {
     assert_eq!(mesh.polygons.corners(), [0, 1, 2, 0, 2, 1]);
     assert_eq!(
         mesh.notes,
-        [
-            Note::VertexColumnsIgnored { count: 2 },
-            Note::FaceColorsIgnored { count: 2 }
-        ]
+        [Note::VertexColumnsIgnored { count: 2 }, Note::FaceColorsIgnored { count: 2 }]
     );
 }
 
@@ -57,38 +52,20 @@ fn elements_may_be_spread_over_lines() {
 fn faults_name_their_line() {
     let cases = [
         ("ply", "line 1: expected `OFF`, found `ply`"),
-        (
-            "OFF BINARY\n\0",
-            "line 1: binary OFF is not read; save it as text",
-        ),
+        ("OFF BINARY\n\0", "line 1: binary OFF is not read; save it as text"),
         (
             "4OFF\n1 1 1",
             "line 1: `4OFF` has points that are not three-dimensional, which is not read",
         ),
-        (
-            "OFF\n3 -1 0",
-            "line 2: expected the number of faces, found `-1`",
-        ),
-        (
-            "OFF\n3 1 0 7",
-            "line 2: expected the end of the line after the counts, found `7`",
-        ),
-        (
-            "OFF\n3",
-            "line 2: the file ends too early: expected the number of faces",
-        ),
+        ("OFF\n3 -1 0", "line 2: expected the number of faces, found `-1`"),
+        ("OFF\n3 1 0 7", "line 2: expected the end of the line after the counts, found `7`"),
+        ("OFF\n3", "line 2: the file ends too early: expected the number of faces"),
         (
             "OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2",
             "line 3: expected three coordinates, found fewer values in the line",
         ),
-        (
-            "OFF\n3 1 0\n0 0 inf",
-            "line 3: expected a finite number, found `inf`",
-        ),
-        (
-            "OFF\n3 1 0\n0 0 0\n\n1 x",
-            "line 5: expected a vertex coordinate, found `x`",
-        ),
+        ("OFF\n3 1 0\n0 0 inf", "line 3: expected a finite number, found `inf`"),
+        ("OFF\n3 1 0\n0 0 0\n\n1 x", "line 5: expected a vertex coordinate, found `x`"),
         (
             "OFF\n9000000000 1 0\n0 0 0\n",
             "line 3: the file ends too early: expected 9000000000 vertices, found 1",
@@ -97,22 +74,13 @@ fn faults_name_their_line() {
             "OFF\n1 2 0\n0 0 0\n3 0 0 0\n",
             "line 4: the file ends too early: expected 2 faces, found 1",
         ),
-        (
-            "OFF\n1 2 0\n0 0 0\n3 0",
-            "line 4: the file ends too early: expected 2 faces, found 0",
-        ),
+        ("OFF\n1 2 0\n0 0 0\n3 0", "line 4: the file ends too early: expected 2 faces, found 0"),
         (
             "OFF\n4 2 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n4 0 0 0\n3 0 0 0",
             "line 7: expected 4 corners, found fewer values in the line",
         ),
-        (
-            "OFF\n1 1 0\n0 0 0\n2 0 0",
-            "line 4: a face needs at least 3 corners, found 2",
-        ),
-        (
-            "OFF\n1 1 0\n0 0 0\n3 0 0 1.5",
-            "line 4: expected a vertex index, found `1.5`",
-        ),
+        ("OFF\n1 1 0\n0 0 0\n2 0 0", "line 4: a face needs at least 3 corners, found 2"),
+        ("OFF\n1 1 0\n0 0 0\n3 0 0 1.5", "line 4: expected a vertex index, found `1.5`"),
         (
             "OFF\n1 1 0\n0 0 0\n3 0 0 1",
             "line 4: vertex index 1 is out of range: the file has 1 vertex, counted from 0",
@@ -131,8 +99,5 @@ fn faults_name_their_line() {
     }
     assert_eq!(fault(" \n"), "a: the file is empty");
     assert_eq!(fault("OFF 0 0 0"), "a: the file has no vertices");
-    assert_eq!(
-        fault("OFF 2 0 0\n0 0 0"),
-        "a: the file has 2 vertices but no faces"
-    );
+    assert_eq!(fault("OFF 2 0 0\n0 0 0"), "a: the file has 2 vertices but no faces");
 }

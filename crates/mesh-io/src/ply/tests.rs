@@ -5,29 +5,15 @@ const HEADER: &str = "comment c\nobj_info i\nelement vertex 3\nproperty double x
         property int8 tag\nproperty list uchar int vertex_indices\nelement edge 1\nproperty uint a\nend_header\n";
 
 fn check(bytes: &[u8]) {
-    let mesh = parse(bytes)
-        .map_err(|fault| fault.named("a.ply").to_string())
-        .unwrap();
-    assert_eq!(
-        mesh.positions,
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.5, 0.0]]
-    );
-    assert_eq!(
-        mesh.polygons.iter().collect::<Vec<_>>(),
-        [&[0, 1, 2][..], &[2, 1, 0, 0]]
-    );
+    let mesh = parse(bytes).map_err(|fault| fault.named("a.ply").to_string()).unwrap();
+    assert_eq!(mesh.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.5, 0.0]]);
+    assert_eq!(mesh.polygons.iter().collect::<Vec<_>>(), [&[0, 1, 2][..], &[2, 1, 0, 0]]);
     let vertex = Note::PropertiesIgnored {
         element: "vertex".into(),
         names: vec!["red".into(), "seen".into()],
     };
-    let face = Note::PropertiesIgnored {
-        element: "face".into(),
-        names: vec!["tag".into()],
-    };
-    let edge = Note::ElementsIgnored {
-        kind: "`edge` element".into(),
-        count: 1,
-    };
+    let face = Note::PropertiesIgnored { element: "face".into(), names: vec!["tag".into()] };
+    let edge = Note::ElementsIgnored { kind: "`edge` element".into(), count: 1 };
     assert_eq!(mesh.notes, [vertex, face, edge]);
 }
 
@@ -46,11 +32,7 @@ fn binary(big: bool) -> Vec<u8> {
             bytes[start..].reverse();
         }
     };
-    for (x, seen, y) in [
-        (0.0f64, &[][..], 0.0f32),
-        (1.0, &[7u16, 8], 0.0),
-        (0.0, &[9], 0.5),
-    ] {
+    for (x, seen, y) in [(0.0f64, &[][..], 0.0f32), (1.0, &[7u16, 8], 0.0), (0.0, &[9], 0.5)] {
         put(&x.to_le_bytes());
         put(&[255]);
         put(&(seen.len() as i16).to_le_bytes());
@@ -101,10 +83,7 @@ fn every_cut_of_a_binary_file_is_found() {
         );
         assert!(cut, "{end}: {fault:?}");
     }
-    let fault = parse(&whole[..whole.len() - 5])
-        .unwrap_err()
-        .named("a")
-        .to_string();
+    let fault = parse(&whole[..whole.len() - 5]).unwrap_err().named("a").to_string();
     let expected = "the file ends too early: expected 2 `face` elements, found 1";
     assert_eq!(fault, format!("a, byte {}: {expected}", whole.len() - 5));
 }
@@ -119,31 +98,16 @@ fn faults_in_the_data_name_their_line() {
     let header = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
             element face 1\nproperty list uchar int vertex_indices\n";
     let cases = [
-        (
-            "0 0 0\n",
-            "line 10: the file ends too early: expected 2 `vertex` elements, found 1",
-        ),
+        ("0 0 0\n", "line 10: the file ends too early: expected 2 `vertex` elements, found 1"),
         (
             "0 0\n0 0 0",
             "line 10: expected one more value for this `vertex`, found the end of the line",
         ),
-        (
-            "0 0 0 9\n",
-            "line 10: expected the end of the line after a `vertex`, found `9`",
-        ),
-        (
-            "0 0 0\n0 nan 0",
-            "line 11: expected a finite number, found `nan`",
-        ),
+        ("0 0 0 9\n", "line 10: expected the end of the line after a `vertex`, found `9`"),
+        ("0 0 0\n0 nan 0", "line 11: expected a finite number, found `nan`"),
         ("0 0 0\n0 z 0", "line 11: expected a number, found `z`"),
-        (
-            "0 0 0\n0 0 0\n2 0 1",
-            "line 12: a face needs at least 3 corners, found 2",
-        ),
-        (
-            "0 0 0\n0 0 0\n-3 0 1",
-            "line 12: expected the length of a list, found `-3`",
-        ),
+        ("0 0 0\n0 0 0\n2 0 1", "line 12: a face needs at least 3 corners, found 2"),
+        ("0 0 0\n0 0 0\n-3 0 1", "line 12: expected the length of a list, found `-3`"),
         (
             "0 0 0\n0 0 0\n3 0 1 2",
             "line 12: vertex index 2 is out of range: the file has 2 vertices, counted from 0",
@@ -152,10 +116,7 @@ fn faults_in_the_data_name_their_line() {
             "0 0 0\n0 0 0\n3 0 1 -1",
             "line 12: vertex index -1 is out of range: the file has 2 vertices, counted from 0",
         ),
-        (
-            "0 0 0\n0 0 0\n3 0 1 .5",
-            "line 12: expected a vertex index, found `.5`",
-        ),
+        ("0 0 0\n0 0 0\n3 0 1 .5", "line 12: expected a vertex index, found `.5`"),
         (
             "0 0 0\n0 0 0\n3 0 1 1\n7",
             "line 13: the header announces fewer elements, but the file goes on with `7`",
@@ -178,14 +139,8 @@ fn faults_in_the_header_name_their_line() {
             "element vertex 1\nproperty real x\n".to_owned(),
             "a, line 4: expected a number type such as `float`, found `real`",
         ),
-        (
-            "property float x\n".to_owned(),
-            "a, line 3: expected `element`, found `property`",
-        ),
-        (
-            "elephant 1\n".to_owned(),
-            "a, line 3: expected a PLY header statement, found `elephant`",
-        ),
+        ("property float x\n".to_owned(), "a, line 3: expected `element`, found `property`"),
+        ("elephant 1\n".to_owned(), "a, line 3: expected a PLY header statement, found `elephant`"),
         (
             "element vertex 1\nelement vertex 1\n".to_owned(),
             "a, line 4: expected each element once, found a second element `vertex`",
@@ -233,10 +188,7 @@ fn faults_in_the_header_name_their_line() {
         parse("ply\nend_header\n"),
         "a, line 2: expected a `format` statement in the header, found none"
     );
-    assert_eq!(
-        parse("ply\nformat ascii 2.0"),
-        "a, line 2: expected version `1.0`, found `2.0`"
-    );
+    assert_eq!(parse("ply\nformat ascii 2.0"), "a, line 2: expected version `1.0`, found `2.0`");
     assert_eq!(
         parse("ply\nformat ascii 1.0\n"),
         "a, line 2: the file ends too early: expected `end_header`"
@@ -248,10 +200,7 @@ fn counts_cost_nothing() {
     let header = "ply\nformat binary_little_endian 1.0\nelement nothing 9000000000000000000\n\
             element vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n\
             element face 1\nproperty list uint uint vertex_indices\nend_header\n";
-    let fault = parse(&[header.as_bytes(), &[0; 24]].concat())
-        .unwrap_err()
-        .named("a")
-        .to_string();
+    let fault = parse(&[header.as_bytes(), &[0; 24]].concat()).unwrap_err().named("a").to_string();
     let expected = "the file ends too early: expected 4000000000 `vertex` elements, found 2";
     assert_eq!(fault, format!("a, byte {}: {expected}", header.len() + 24));
 }

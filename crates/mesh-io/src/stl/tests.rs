@@ -28,35 +28,20 @@ fn fault(bytes: &[u8]) -> String {
     parse(bytes).unwrap_err().named("a").to_string()
 }
 
-const TWO: [[f32; 9]; 2] = [
-    [0., 0., 0., 1., 0., 0., 0., 1., 0.],
-    [1., 0., 0., 1., 1., 0., -0., 1., 0.],
-];
+const TWO: [[f32; 9]; 2] =
+    [[0., 0., 0., 1., 0., 0., 0., 1., 0.], [1., 0., 0., 1., 1., 0., -0., 1., 0.]];
 
 #[test]
 fn ascii_and_binary_weld_in_order_of_appearance() {
     let text = ascii(&["0 0 0, 1 0 0, 0 1 0", "1 0 -0, 1 1 0, -0 1 0"]);
-    let expected = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [1.0, 1.0, 0.0],
-    ];
-    for bytes in [
-        text.clone().into_bytes(),
-        text.replace('\n', "\r\n").into_bytes(),
-        binary(2, &TWO),
-    ] {
+    let expected = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    for bytes in
+        [text.clone().into_bytes(), text.replace('\n', "\r\n").into_bytes(), binary(2, &TWO)]
+    {
         let mesh = parse(&bytes).unwrap();
         assert_eq!(mesh.positions, expected);
         assert_eq!(mesh.polygons.corners(), [0, 1, 2, 1, 3, 2]);
-        assert_eq!(
-            mesh.notes,
-            [Note::VerticesWelded {
-                before: 6,
-                after: 4
-            }]
-        );
+        assert_eq!(mesh.notes, [Note::VerticesWelded { before: 6, after: 4 }]);
     }
 }
 
@@ -73,18 +58,12 @@ fn several_solids_and_degenerate_facets() {
 fn text_faults_name_their_line() {
     let good = ascii(&["0 0 0, 1 0 0, 0 1 0"]);
     let cases = [
-        (
-            good.replace("endloop", "vertex 0 0 0"),
-            "line 7: expected `endloop`, found `vertex`",
-        ),
+        (good.replace("endloop", "vertex 0 0 0"), "line 7: expected `endloop`, found `vertex`"),
         (
             good.replace("1 0 0", "1 0"),
             "line 5: expected three coordinates after `vertex`, found the end of the line",
         ),
-        (
-            good.replace("1 0 0", "1 inf 0"),
-            "line 5: expected a finite number, found `inf`",
-        ),
+        (good.replace("1 0 0", "1 inf 0"), "line 5: expected a finite number, found `inf`"),
         (
             good.replace("1 0 0", "1,0 0 0"),
             "line 5: expected three coordinates after `vertex`, found `1,0` (write decimals with a point)",
@@ -102,10 +81,7 @@ fn text_faults_name_their_line() {
             "line 4: the file ends too early: expected three coordinates after `vertex`",
         ),
         (good + "more", "line 10: expected `solid`, found `more`"),
-        (
-            "hello".to_owned(),
-            "line 1: expected `solid`, found `hello`",
-        ),
+        ("hello".to_owned(), "line 1: expected `solid`, found `hello`"),
     ];
     for (text, expected) in cases {
         assert_eq!(fault(text.as_bytes()), format!("a, {expected}"), "{text}");
@@ -129,18 +105,12 @@ fn binary_faults_name_their_byte() {
     );
     let mut broken = TWO;
     broken[1][4] = f32::NAN;
-    assert_eq!(
-        fault(&binary(2, &broken)),
-        "a, byte 162: expected a finite number, found NaN"
-    );
+    assert_eq!(fault(&binary(2, &broken)), "a, byte 162: expected a finite number, found NaN");
     assert_eq!(
         fault(&binary(1, &TWO)),
         "a, byte 134: the header announces 1 facets, but the file goes on with 1 more"
     );
     let mut longer = binary(2, &TWO);
     longer.extend_from_slice(b"mark");
-    assert_eq!(
-        parse(&longer).unwrap().notes[1],
-        Note::TrailingBytes { count: 4 }
-    );
+    assert_eq!(parse(&longer).unwrap().notes[1], Note::TrailingBytes { count: 4 });
 }

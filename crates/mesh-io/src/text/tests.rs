@@ -12,11 +12,7 @@ fn lines(text: &[u8]) -> Vec<(usize, String)> {
 
 #[test]
 fn every_line_end_counts_once() {
-    let expected = [
-        (1, "a".to_owned()),
-        (2, "b".to_owned()),
-        (4, "c".to_owned()),
-    ];
+    let expected = [(1, "a".to_owned()), (2, "b".to_owned()), (4, "c".to_owned())];
     assert_eq!(lines(b"a\nb\n\nc"), expected);
     assert_eq!(lines(b"a\rb\r\rc\r"), expected);
     assert_eq!(lines(b"\xef\xbb\xbfa\r\nb\r\n\r\nc\r\n"), expected);
@@ -24,10 +20,7 @@ fn every_line_end_counts_once() {
 
 #[test]
 fn comments_and_continuations() {
-    assert_eq!(
-        lines(b"a#b \\\nc"),
-        [(1, "a".to_owned()), (2, "c".to_owned())]
-    );
+    assert_eq!(lines(b"a#b \\\nc"), [(1, "a".to_owned()), (2, "c".to_owned())]);
     let mut text = Text::new(b"f 1 \\ \r\n 2\\\n3\\4\nv").with_continuation();
     let tokens: Vec<_> = std::iter::from_fn(|| text.token()).collect();
     assert_eq!(tokens, [&b"f"[..], b"1", b"2", b"3\\4"]);
@@ -53,19 +46,8 @@ fn the_end_is_the_last_line_with_text() {
 fn numbers() {
     assert_eq!(parse_number(b"-1.5e3"), Ok(-1500.0));
     assert_eq!(parse_number(b"1."), Ok(1.0));
-    for token in [
-        &b"nan"[..],
-        b"-NaN",
-        b"inf",
-        b"1e999",
-        b"-nan(ind)",
-        b"1.#QNAN0",
-        b"-1.#IND",
-    ] {
-        assert!(
-            parse_number(token).is_ok_and(|number| !number.is_finite()),
-            "{token:?}"
-        );
+    for token in [&b"nan"[..], b"-NaN", b"inf", b"1e999", b"-nan(ind)", b"1.#QNAN0", b"-1.#IND"] {
+        assert!(parse_number(token).is_ok_and(|number| !number.is_finite()), "{token:?}");
     }
     for token in [&b"abc"[..], b"1,5", b"0x10", b"1e", b"\xff", b"nano"] {
         assert!(parse_number(token).is_err(), "{token:?}");

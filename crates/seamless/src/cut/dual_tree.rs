@@ -41,10 +41,7 @@ impl DualTree {
             tree.order.push(f);
             for h in f.halfedges() {
                 if mesh.twin(h).is_some_and(|t| !reached[t.face()]) {
-                    queue.push(Candidate {
-                        weight: weight(h),
-                        halfedge: h,
-                    });
+                    queue.push(Candidate { weight: weight(h), halfedge: h });
                 }
             }
             next = None;
@@ -90,10 +87,7 @@ struct Candidate {
 
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .weight
-            .total_cmp(&self.weight)
-            .then(other.halfedge.cmp(&self.halfedge))
+        other.weight.total_cmp(&self.weight).then(other.halfedge.cmp(&self.halfedge))
     }
 }
 

@@ -53,12 +53,7 @@ impl Cut {
                 wedge[h] = n_wedges as u32 - 1;
             }
         }
-        Self {
-            wedge,
-            n_wedges,
-            seams,
-            is_seam,
-        }
+        Self { wedge, n_wedges, seams, is_seam }
     }
 
     /// The wedges of a half-edge's origin and tip, in its own face.

@@ -17,10 +17,8 @@ pub fn connect_cones(
 ) -> Option<(Cut, DualTree)> {
     let forbidden = steiner_edges(mesh, metric, is_cone);
     let tree = DualTree::breadth_first(mesh, &forbidden)?;
-    let mut is_seam: HalfedgeData<bool> = mesh
-        .halfedges()
-        .map(|h| mesh.twin(h).is_some() && !tree.crossed[h])
-        .collect();
+    let mut is_seam: HalfedgeData<bool> =
+        mesh.halfedges().map(|h| mesh.twin(h).is_some() && !tree.crossed[h]).collect();
     prune(mesh, is_cone, &mut is_seam);
     Some((Cut::new(mesh, |h| !is_seam[h]), tree))
 }
@@ -102,10 +100,7 @@ fn prune(mesh: &TriMesh, is_cone: &VertexData<bool>, is_seam: &mut HalfedgeData<
     for h in mesh.halfedges().filter(|&h| is_seam[h]) {
         degree[mesh.origin(h)] += 1;
     }
-    let mut ends: Vec<Vertex> = mesh
-        .vertices()
-        .filter(|&v| degree[v] == 1 && !keeps(v))
-        .collect();
+    let mut ends: Vec<Vertex> = mesh.vertices().filter(|&v| degree[v] == 1 && !keeps(v)).collect();
     while let Some(v) = ends.pop() {
         let last = mesh.outgoing(v).find(|&h| is_seam[h]);
         let Some((h, t)) = last.and_then(|h| Some((h, mesh.twin(h)?))) else {

@@ -15,11 +15,7 @@ pub fn frame(triangle: &Triangle, z: &[Complex64]) -> Complex64 {
 
 /// Frames of all triangles.
 pub fn frames(triangles: &[Triangle], z: &[Complex64]) -> Vec<Complex64> {
-    triangles
-        .par_iter()
-        .with_min_len(4096)
-        .map(|t| frame(t, z))
-        .collect()
+    triangles.par_iter().with_min_len(4096).map(|t| frame(t, z)).collect()
 }
 
 /// Layouts that follow given Jacobians as well as the space allows; one factorisation for many.

@@ -72,19 +72,12 @@ impl Energy for PowerOfDirichlet {
         let p = f64::from(self.p);
         let q = inner.value / self.bound;
         let second = q.powi(self.p - 2);
-        let (g1, g2) = (
-            q * second / self.bound,
-            (p - 1.0) * second / (self.bound * self.bound),
-        );
+        let (g1, g2) = (q * second / self.bound, (p - 1.0) * second / (self.bound * self.bound));
         let [d1, d2] = inner.d;
         Jet {
             value: q * q * second / p,
             d: [g1 * d1, g1 * d2],
-            dd: [
-                g1 * inner.dd[0] + g2 * d1 * d1,
-                g2 * d1 * d2,
-                g1 * inner.dd[2] + g2 * d2 * d2,
-            ],
+            dd: [g1 * inner.dd[0] + g2 * d1 * d1, g2 * d1 * d2, g1 * inner.dd[2] + g2 * d2 * d2],
         }
     }
 }
@@ -102,11 +95,7 @@ impl Untangling {
     #[inline]
     pub fn chi(&self, d: f64) -> [f64; 3] {
         let q = self.eps.hypot(d);
-        let value = if d >= 0.0 {
-            0.5 * (d + q)
-        } else {
-            0.5 * self.eps * self.eps / (q - d)
-        };
+        let value = if d >= 0.0 { 0.5 * (d + q) } else { 0.5 * self.eps * self.eps / (q - d) };
         [value, value / q, 0.5 * self.eps * self.eps / (q * q * q)]
     }
 }
@@ -208,11 +197,7 @@ impl ProjectedHessian {
         let Complex64 { re: c, im: s } = half_angle(direction(Complex64::new(half, f12)));
         let (sum, difference) = (s1 + s2, s1 - s2);
         let twist = if sum > 1e-9 { (f1 + f2) / sum } else { 0.0 };
-        let flip = if difference > 1e-7 {
-            (f1 - f2) / difference
-        } else {
-            f11 - f12
-        };
+        let flip = if difference > 1e-7 { (f1 - f2) / difference } else { f11 - f12 };
         const R: f64 = std::f64::consts::FRAC_1_SQRT_2;
         Self {
             value: jet.value,
@@ -233,11 +218,7 @@ impl ProjectedHessian {
 fn half_angle(z: Complex64) -> Complex64 {
     let larger = ((1.0 + z.re.abs()) / 2.0).sqrt();
     let smaller = z.im / (2.0 * larger);
-    if z.re >= 0.0 {
-        Complex64::new(larger, smaller)
-    } else {
-        Complex64::new(smaller, larger)
-    }
+    if z.re >= 0.0 { Complex64::new(larger, smaller) } else { Complex64::new(smaller, larger) }
 }
 
 #[cfg(test)]
@@ -257,11 +238,7 @@ mod tests {
     }
 
     fn check_derivatives(energy: &impl Energy) {
-        for j in [
-            [1.3, 0.2, -0.4, 0.9],
-            [0.7, -1.1, 1.0, 0.3],
-            [1.0, 0.1, -0.1, 1.0],
-        ] {
+        for j in [[1.3, 0.2, -0.4, 0.9], [0.7, -1.1, 1.0, 0.3], [1.0, 0.1, -0.1, 1.0]] {
             let hessian = ProjectedHessian::new(energy, &at(j));
             let value = |j: [f64; 4]| {
                 let (s1, s2) = at(j).singular_values();
@@ -287,10 +264,7 @@ mod tests {
                         })
                         .sum();
                     // All eigenvalues are positive at these points, so nothing was cut off.
-                    assert!(
-                        (second - model).abs() < 1e-5 * (1.0 + second.abs()),
-                        "{j:?} {k}{l}"
-                    );
+                    assert!((second - model).abs() < 1e-5 * (1.0 + second.abs()), "{j:?} {k}{l}");
                 }
             }
         }

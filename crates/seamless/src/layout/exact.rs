@@ -7,6 +7,7 @@ use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::{LayoutProblem, triangles};
 use super::space::{regauge, seamless_space, turned_vertices};
 use crate::cut::{Cut, SeamGraph, connect_cones};
+use crate::progress::{Cancelled, Watch};
 use crate::quarter::turn;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
@@ -65,13 +66,7 @@ impl ExactLayout {
         let space = seamless_space(mesh, &cut, &graph, &matching);
         let problem = LayoutProblem::new(space, triangles(mesh, metric, &cut), None)?;
         let index = matched.cone_indices(mesh, metric);
-        Ok(Self {
-            cut,
-            matching,
-            gauge,
-            index,
-            problem,
-        })
+        Ok(Self { cut, matching, gauge, index, problem })
     }
 
     /// The problem behind it.
@@ -82,6 +77,16 @@ impl ExactLayout {
     /// Positions of the wedges for the unknowns.
     pub fn expand(&self, y: &[f64]) -> Vec<Complex64> {
         self.problem.space().expand(y)
+    }
+
+    /// The unknowns of a layout of another cut that has no seams: they are the positions themselves, up
+    /// to the translation that is pinned.
+    pub fn adopt(&self, other: &Cut, z: &[Complex64]) -> Vec<f64> {
+        let mut here = vec![Complex64::ZERO; self.cut.n_wedges];
+        for (there, wedge) in other.wedge.iter().zip(self.cut.wedge.iter()) {
+            here[*wedge as usize] = z[*there as usize];
+        }
+        self.problem.space().restrict(&here)
     }
 
     /// The exact layout nearest to one of the all-seam cut, in the Jacobians (one Poisson solve).
@@ -107,11 +112,7 @@ impl ExactLayout {
         frames: &[Complex64],
         iterations: usize,
     ) -> Result<Vec<f64>, NotPositiveDefinite> {
-        let turned = frames
-            .iter()
-            .zip(self.gauge.iter())
-            .map(|(&r, &k)| turn(r, k))
-            .collect();
+        let turned = frames.iter().zip(self.gauge.iter()).map(|(&r, &k)| turn(r, k)).collect();
         Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations))
     }
 
@@ -135,20 +136,21 @@ impl ExactLayout {
     /// Rotations of the triangles of a layout, in the gauge of the all-seam cut.
     pub fn frames(&self, y: &[f64]) -> Vec<Complex64> {
         let here = frames(self.problem.triangles(), &self.expand(y));
-        here.into_iter()
-            .zip(self.gauge.iter())
-            .map(|(r, &k)| turn(r, -k))
-            .collect()
+        here.into_iter().zip(self.gauge.iter()).map(|(r, &k)| turn(r, -k)).collect()
     }
 
     /// Minimises an energy; the start must be free of flips.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     pub fn minimize(
         &mut self,
         y: Vec<f64>,
         energy: &impl Energy,
         options: &NewtonOptions,
-    ) -> NewtonSolution {
-        minimize(&mut self.problem, y, energy, options)
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<NewtonSolution, Cancelled> {
+        minimize(&mut self.problem, y, energy, options, watch)
     }
 
     /// Replaces the metric, keeping cut and space.
@@ -167,20 +169,13 @@ impl ExactLayout {
     /// Mean symmetric Dirichlet energy at its best scale, and tau.
     pub fn distortion(&self, y: &[f64]) -> (f64, f64) {
         let m = self.measure(y);
-        (
-            2.0 * (m.squares * m.inverse_squares).sqrt(),
-            (m.largest / m.smallest).sqrt(),
-        )
+        (2.0 * (m.squares * m.inverse_squares).sqrt(), (m.largest / m.smallest).sqrt())
     }
 
     fn measure(&self, y: &[f64]) -> Measure {
         let z = self.expand(y);
-        let start = Measure {
-            squares: 0.0,
-            inverse_squares: 0.0,
-            largest: 0.0,
-            smallest: f64::INFINITY,
-        };
+        let start =
+            Measure { squares: 0.0, inverse_squares: 0.0, largest: 0.0, smallest: f64::INFINITY };
         self.problem.triangles().iter().fold(start, |m, t| {
             let (s1, s2) = t.jacobian(&z).singular_values();
             Measure {

@@ -42,10 +42,7 @@ pub struct Closed {
 
 /// Penalty weights of the barrier homotopy, per triangle of mean area.
 const BARRIER_WEIGHTS: [f64; 4] = [1.0, 1e2, 1e4, 1e6];
-const BARRIER_STEPS: NewtonOptions = NewtonOptions {
-    max_iterations: 3,
-    tolerance: 1e-3,
-};
+const BARRIER_STEPS: NewtonOptions = NewtonOptions { max_iterations: 3, tolerance: 1e-3 };
 
 /// Raises the penalty on the final matchings step by step.
 pub fn barrier(
@@ -58,7 +55,7 @@ pub fn barrier(
     let mut run = Run::new(mesh, metric, matched, targets)?;
     for (k, weight) in BARRIER_WEIGHTS.into_iter().enumerate() {
         watch.tick(k as f64 / BARRIER_WEIGHTS.len() as f64)?;
-        run.relax(weight, &BARRIER_STEPS);
+        run.relax(weight, &BARRIER_STEPS, watch)?;
     }
     Ok(run.finish())
 }
@@ -74,19 +71,13 @@ pub struct Continuation {
 
 impl Default for Continuation {
     fn default() -> Self {
-        Self {
-            largest_turn: 0.3,
-            angle_tolerance: 0.7,
-        }
+        Self { largest_turn: 0.3, angle_tolerance: 0.7 }
     }
 }
 
 const CONTINUATION_WEIGHT: f64 = 1e3;
 const CONTINUATION_LARGEST_WEIGHT: f64 = 1e7;
-const CONTINUATION_STEPS: NewtonOptions = NewtonOptions {
-    max_iterations: 2,
-    tolerance: 1e-3,
-};
+const CONTINUATION_STEPS: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e-3 };
 const CONTINUATION_MOST_STEPS: usize = 600;
 
 /// Turns the seam targets from the isometric rotations to the matchings along the lifted line between
@@ -98,19 +89,10 @@ pub fn continuation(
     settings: &Continuation,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Closed, HomotopyError> {
-    let change: Vec<f64> = matched
-        .matching
-        .iter()
-        .zip(&matched.isometric)
-        .map(|(&r, r0)| f64::from(r) - r0)
-        .collect();
+    let change: Vec<f64> =
+        matched.matching.iter().zip(&matched.isometric).map(|(&r, r0)| f64::from(r) - r0).collect();
     let at = |s: f64| -> Vec<f64> {
-        matched
-            .isometric
-            .iter()
-            .zip(&change)
-            .map(|(r0, d)| r0 + s * d)
-            .collect()
+        matched.isometric.iter().zip(&change).map(|(r0, d)| r0 + s * d).collect()
     };
     let turns = |r: &[f64]| r.iter().map(|&r| rotation(r)).collect::<Vec<_>>();
     let widest = change.iter().fold(0.0f64, |m, d| m.max(d.abs())).max(1e-9);
@@ -127,7 +109,7 @@ pub fn continuation(
         let mut tried = weight;
         let mut reached = false;
         for _ in 0..4 {
-            run.relax(tried, &CONTINUATION_STEPS);
+            run.relax(tried, &CONTINUATION_STEPS, watch)?;
             if run.angle_error(mesh, &index) < settings.angle_tolerance {
                 reached = true;
                 break;
@@ -136,11 +118,7 @@ pub fn continuation(
         }
         if reached {
             s = next;
-            weight = if tried > weight {
-                (tried / 10.0).max(CONTINUATION_WEIGHT)
-            } else {
-                weight
-            };
+            weight = if tried > weight { (tried / 10.0).max(CONTINUATION_WEIGHT) } else { weight };
             step = (step * 1.4).min(first_step);
         } else if step / 2.0 >= first_step / 32.0 {
             run.y = before;
@@ -152,14 +130,11 @@ pub fn continuation(
         }
     }
     run.set_targets(matched.matching.iter().map(|&r| unit(r)).collect());
-    let final_steps = NewtonOptions {
-        max_iterations: 2,
-        tolerance: 1e-3,
-    };
+    let final_steps = NewtonOptions { max_iterations: 2, tolerance: 1e-3 };
     while weight < CONTINUATION_LARGEST_WEIGHT {
         watch.tick(s)?;
         weight *= 10f64.sqrt();
-        run.relax(weight, &final_steps);
+        run.relax(weight, &final_steps, watch)?;
     }
     Ok(run.finish())
 }
@@ -185,11 +160,7 @@ impl Run {
             Some(penalty),
         )?;
         let y = z.iter().flat_map(|z| [z.re, z.im]).collect();
-        Ok(Self {
-            problem,
-            y,
-            steps: 0,
-        })
+        Ok(Self { problem, y, steps: 0 })
     }
 
     fn set_targets(&mut self, targets: Vec<Complex64>) {
@@ -198,15 +169,21 @@ impl Run {
         }
     }
 
-    fn relax(&mut self, weight: f64, options: &NewtonOptions) {
+    fn relax(
+        &mut self,
+        weight: f64,
+        options: &NewtonOptions,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(), Cancelled> {
         let share = 1.0 / self.problem.triangles().len() as f64;
         if let Some(penalty) = &mut self.problem.penalty {
             penalty.weight = weight * share;
         }
         let y = std::mem::take(&mut self.y);
-        let solution = minimize(&mut self.problem, y, &SymmetricDirichlet, options);
+        let solution = minimize(&mut self.problem, y, &SymmetricDirichlet, options, watch)?;
         self.y = solution.y;
         self.steps += solution.iterations.max(1);
+        Ok(())
     }
 
     fn angle_error(&self, mesh: &TriMesh, index: &VertexData<f64>) -> f64 {
@@ -220,16 +197,8 @@ impl Run {
 
     fn finish(self) -> Closed {
         let z = self.problem.space().expand(&self.y);
-        let gap = self
-            .problem
-            .penalty
-            .as_ref()
-            .map_or(0.0, |p| p.largest_gap(&z));
-        Closed {
-            z,
-            steps: self.steps,
-            gap,
-        }
+        let gap = self.problem.penalty.as_ref().map_or(0.0, |p| p.largest_gap(&z));
+        Closed { z, steps: self.steps, gap }
     }
 }
 

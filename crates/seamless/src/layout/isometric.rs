@@ -39,21 +39,16 @@ pub fn unfold(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Ve
         let turn = rotation(heading[f] / FRAC_PI_2);
         let flat = metric.flat[f];
         let place = |z: &mut Vec<Complex64>, f: Face, from: usize, to: usize| {
-            let (from_wedge, to_wedge) = (
-                cut.wedge[f.halfedge(from)] as usize,
-                cut.wedge[f.halfedge(to)] as usize,
-            );
+            let (from_wedge, to_wedge) =
+                (cut.wedge[f.halfedge(from)] as usize, cut.wedge[f.halfedge(to)] as usize);
             z[to_wedge] = z[from_wedge] + turn * (flat[to] - flat[from]);
         };
         match tree.parent[f].and_then(|h| mesh.twin(h)) {
             // The two corners on the shared edge stand; hang the third on the nearer one.
             Some(t) => {
                 let (near, far, apex) = (t.side(), (t.side() + 1) % 3, (t.side() + 2) % 3);
-                let nearer = if metric.length[t.prev()] <= metric.length[t.next()] {
-                    near
-                } else {
-                    far
-                };
+                let nearer =
+                    if metric.length[t.prev()] <= metric.length[t.next()] { near } else { far };
                 place(&mut z, f, nearer, apex);
             }
             None => {

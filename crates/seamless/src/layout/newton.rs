@@ -2,6 +2,7 @@
 
 use super::energy::Energy;
 use super::problem::{LayoutProblem, largest_step};
+use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 
 /// When to stop.
@@ -55,22 +56,22 @@ const MAX_HALVINGS: usize = 40;
 /// Each iteration solves with the Hessian whose per-triangle blocks are projected to positive
 /// semi-definite ones, steps at most 0.9 of the way to the first collapsing triangle (Smith and
 /// Schaefer 2015) and backtracks until the energy falls.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn minimize(
     problem: &mut LayoutProblem,
     y: Vec<f64>,
     energy: &impl Energy,
     options: &NewtonOptions,
-) -> NewtonSolution {
+    watch: &mut Watch<'_, '_>,
+) -> Result<NewtonSolution, Cancelled> {
     let z = problem.space().expand(&y);
     let energy_now = problem.value(energy, &z);
-    let mut now = NewtonSolution {
-        y,
-        z,
-        energy: energy_now,
-        iterations: 0,
-        stop: Stop::IterationLimit,
-    };
+    let mut now =
+        NewtonSolution { y, z, energy: energy_now, iterations: 0, stop: Stop::IterationLimit };
     while now.iterations < options.max_iterations {
+        watch.pulse()?;
         let mut step = problem.linearize(energy, &now.z);
         let gradient = step.clone();
         if problem.factorize(SHIFT).is_err() {
@@ -114,5 +115,5 @@ pub fn minimize(
     if problem.value(energy, &exact).is_finite() {
         now.z = exact;
     }
-    now
+    Ok(now)
 }

@@ -70,10 +70,8 @@ pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
 
 /// Deterministic parallel sum over triangles.
 pub fn sum_over(triangles: &[Triangle], value: impl Fn(&Triangle) -> f64 + Sync) -> f64 {
-    let parts: Vec<f64> = triangles
-        .par_chunks(CHUNK)
-        .map(|chunk| chunk.iter().map(&value).sum())
-        .collect();
+    let parts: Vec<f64> =
+        triangles.par_chunks(CHUNK).map(|chunk| chunk.iter().map(&value).sum()).collect();
     parts.iter().sum()
 }
 
@@ -129,25 +127,17 @@ struct SeamElement {
 
 impl SeamElement {
     fn new([a, b, c, d]: [u32; 4]) -> Self {
-        let mut element = Self {
-            wedges: Vec::new(),
-            constant: Vec::new(),
-            linear: Vec::new(),
-        };
+        let mut element = Self { wedges: Vec::new(), constant: Vec::new(), linear: Vec::new() };
         // (d - c) - rotation (b - a)
         for (wedge, constant, linear) in
             [(a, 0.0, 1.0), (b, 0.0, -1.0), (c, -1.0, 0.0), (d, 1.0, 0.0)]
         {
-            let k = element
-                .wedges
-                .iter()
-                .position(|&w| w == wedge)
-                .unwrap_or_else(|| {
-                    element.wedges.push(wedge);
-                    element.constant.push(0.0);
-                    element.linear.push(0.0);
-                    element.wedges.len() - 1
-                });
+            let k = element.wedges.iter().position(|&w| w == wedge).unwrap_or_else(|| {
+                element.wedges.push(wedge);
+                element.constant.push(0.0);
+                element.linear.push(0.0);
+                element.wedges.len() - 1
+            });
             element.constant[k] += constant;
             element.linear[k] += linear;
         }
@@ -168,30 +158,18 @@ impl SeamPenalty {
     /// Penalty on all seams of a cut.
     pub fn new(mesh: &TriMesh, cut: &Cut, rotations: Vec<Complex64>, weight: f64) -> Self {
         let element = |&h| SeamElement::new(cut.seam_wedges(mesh, h));
-        Self {
-            seams: cut.seams.iter().map(element).collect(),
-            rotations,
-            weight,
-        }
+        Self { seams: cut.seams.iter().map(element).collect(), rotations, weight }
     }
 
     /// Value at a layout.
     pub fn value(&self, z: &[Complex64]) -> f64 {
-        let squares = self
-            .seams
-            .iter()
-            .zip(&self.rotations)
-            .map(|(s, &r)| s.gap(r, z).norm_sqr());
+        let squares = self.seams.iter().zip(&self.rotations).map(|(s, &r)| s.gap(r, z).norm_sqr());
         0.5 * self.weight * squares.sum::<f64>()
     }
 
     /// The largest mismatch of a seam.
     pub fn largest_gap(&self, z: &[Complex64]) -> f64 {
-        let gaps = self
-            .seams
-            .iter()
-            .zip(&self.rotations)
-            .map(|(s, &r)| s.gap(r, z).norm());
+        let gaps = self.seams.iter().zip(&self.rotations).map(|(s, &r)| s.gap(r, z).norm());
         gaps.fold(0.0, f64::max)
     }
 }
@@ -224,12 +202,7 @@ impl LayoutProblem {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
             triangles.iter().map(|t| element_map(&space, t)).unzip();
         for seam in penalty.iter().flat_map(|p| &p.seams) {
-            elements.push(
-                seam.wedges
-                    .iter()
-                    .flat_map(|&w| [2 * w, 2 * w + 1])
-                    .collect(),
-            );
+            elements.push(seam.wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
         let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
         let order = order_pairs(space.n_unknowns() / 2, &elements);
@@ -339,21 +312,14 @@ impl LayoutProblem {
     /// When no reasonable shift helps (values that are not finite).
     pub fn factorize(&mut self, shift: f64) -> Result<(), NotPositiveDefinite> {
         let diagonal = self.assembly.pattern().diagonal();
-        let mean = diagonal
-            .iter()
-            .map(|&k| self.matrix[k as usize])
-            .sum::<f64>()
+        let mean = diagonal.iter().map(|&k| self.matrix[k as usize]).sum::<f64>()
             / diagonal.len().max(1) as f64;
         let mut shift = shift * mean;
         for _ in 0..8 {
             for &k in diagonal {
                 self.matrix[k as usize] += shift;
             }
-            if self
-                .cholesky
-                .factorize(self.assembly.pattern(), &self.matrix)
-                .is_ok()
-            {
+            if self.cholesky.factorize(self.assembly.pattern(), &self.matrix).is_ok() {
                 return Ok(());
             }
             shift = (shift * 100.0).max(1e-12 * mean);
@@ -461,9 +427,7 @@ fn pull_back(map: &[f64], h: &[f64; 21], g: &[f64; 6], block: &mut [f64], vector
 }
 
 fn element_map(space: &LinearSpace, triangle: &Triangle) -> (ElementMap, Vec<u32>) {
-    let rows = triangle
-        .wedges
-        .map(|w| [2 * w as usize, 2 * w as usize + 1]);
+    let rows = triangle.wedges.map(|w| [2 * w as usize, 2 * w as usize + 1]);
     let rows = rows.as_flattened();
     let mut unknowns: Vec<u32> = Vec::with_capacity(6);
     let mut direct = true;

@@ -3,6 +3,7 @@
 use super::energy::{SymmetricDirichlet, Untangling};
 use super::exact::{Defects, ExactLayout};
 use super::homotopy::{self, Closed, Continuation, HomotopyError};
+use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use crate::cut::DualTree;
 use crate::progress::{Cancelled, Watch};
@@ -15,6 +16,8 @@ use seamstress_surface::{HalfedgeData, Metric, TriMesh};
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Route {
+    /// The isometric layout itself: there was no seam to close.
+    Isometric,
     /// As-rigid-as-possible iterations in the exact space.
     Rigid,
     /// The same, and untangling of the few triangles it flipped.
@@ -35,6 +38,7 @@ pub enum Route {
 impl std::fmt::Display for Route {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Route::Isometric => f.write_str("isometric layout"),
             Route::Rigid => f.write_str("rigid layout"),
             Route::Untangled => f.write_str("rigid layout, untangled"),
             Route::Barrier => f.write_str("barrier homotopy"),
@@ -87,17 +91,13 @@ const UNTANGLE_ROUNDS: usize = 15;
 const SNOWFLAKES: [f64; 2] = [0.5, 0.3];
 /// Exponents on the way back from a snowflake metric.
 const WAY_BACK: [f64; 7] = [0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
-const SETTLE: NewtonOptions = NewtonOptions {
-    max_iterations: 15,
-    tolerance: 1e-4,
-};
+const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-4 };
 
 /// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation, the same over a
 /// better dual tree, the same in snowflake metrics, in this order, until one has no flip and no wrong
 /// cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
 ///
-/// `metric` is the one to solve in, `exponent` the snowflake exponent it has already (1 for a plain
-/// metric); `start` frames in the gauge of the all-seam cut.
+/// `start`: frames in the gauge of the all-seam cut.
 pub fn lay_out(
     mesh: &TriMesh,
     metric: &Metric,
@@ -106,69 +106,44 @@ pub fn lay_out(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Laid, LayoutError> {
     let mut layout = ExactLayout::new(mesh, metric, matched)?;
+    if matched.cut.seams.is_empty() {
+        let z = unfold(mesh, metric, &matched.tree, &matched.cut);
+        let y = layout.adopt(&matched.cut, &z);
+        if layout.defects(mesh, &y).none() {
+            return Ok(Laid { layout, y, route: Route::Isometric, homotopy_steps: 0 });
+        }
+    }
     if let Some(frames) = start {
         let y = layout.arap(frames, RIGID_ITERATIONS)?;
         let defects = layout.defects(mesh, &y);
         if defects.none() {
-            return Ok(Laid {
-                layout,
-                y,
-                route: Route::Rigid,
-                homotopy_steps: 0,
-            });
+            return Ok(Laid { layout, y, route: Route::Rigid, homotopy_steps: 0 });
         }
         if (defects.flips as f64) < UNTANGLE_SHARE * mesh.n_faces() as f64 {
             let (y, steps) = untangle(&mut layout, y, watch)?;
             if layout.defects(mesh, &y).none() {
-                return Ok(Laid {
-                    layout,
-                    y,
-                    route: Route::Untangled,
-                    homotopy_steps: steps,
-                });
+                return Ok(Laid { layout, y, route: Route::Untangled, homotopy_steps: steps });
             }
         }
     }
     let mut homotopy_steps = 0;
-    if let Some((y, route)) = homotopies(
-        mesh,
-        metric,
-        matched,
-        &mut layout,
-        &mut homotopy_steps,
-        watch,
-    )? {
-        return Ok(Laid {
-            layout,
-            y,
-            route,
-            homotopy_steps,
-        });
+    if let Some((y, route)) =
+        homotopies(mesh, metric, matched, &mut layout, &mut homotopy_steps, watch)?
+    {
+        return Ok(Laid { layout, y, route, homotopy_steps });
     }
     let mut last = Defects::default();
     for exponent in SNOWFLAKES {
         let snowflake = metric.snowflake(mesh, exponent);
         let over = matched.with_metric(mesh, &snowflake);
         layout.set_metric(mesh, &snowflake);
-        let found = homotopies(
-            mesh,
-            &snowflake,
-            &over,
-            &mut layout,
-            &mut homotopy_steps,
-            watch,
-        )?;
+        let found = homotopies(mesh, &snowflake, &over, &mut layout, &mut homotopy_steps, watch)?;
         if let Some((y, _)) = found {
-            let y = way_back(mesh, metric, &mut layout, y, exponent);
+            let y = way_back(mesh, metric, &mut layout, y, exponent, watch)?;
             last = layout.defects(mesh, &y);
             if last.none() {
                 let route = Route::Snowflake { exponent };
-                return Ok(Laid {
-                    layout,
-                    y,
-                    route,
-                    homotopy_steps,
-                });
+                return Ok(Laid { layout, y, route, homotopy_steps });
             }
         }
     }
@@ -182,10 +157,7 @@ fn untangle(
     mut y: Vec<f64>,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<f64>, usize), Cancelled> {
-    let options = NewtonOptions {
-        max_iterations: 2,
-        tolerance: 1e-6,
-    };
+    let options = NewtonOptions { max_iterations: 2, tolerance: 1e-6 };
     let least_determinant = |layout: &ExactLayout, y: &[f64]| {
         let z = layout.expand(y);
         let determinants = layout.problem().triangles().iter().map(|t| {
@@ -201,7 +173,7 @@ fn untangle(
         watch.tick(0.5)?;
         let energy = Untangling { eps };
         let before = layout.problem().value(&energy, &layout.expand(&y));
-        let solution = layout.minimize(y, &energy, &options);
+        let solution = layout.minimize(y, &energy, &options, watch)?;
         (y, steps) = (solution.y, steps + solution.iterations.max(1));
         least = least_determinant(layout, &y);
         if least > 0.0 {
@@ -210,11 +182,7 @@ fn untangle(
         // The paper's rule: shrink eps by as much as the energy fell, so that it keeps falling.
         let fall = (1.0 - solution.energy / before).max(0.1);
         let goal = (1.0 - fall) * energy.chi(least)[0];
-        eps = if least < goal {
-            2.0 * (goal * (goal - least)).sqrt()
-        } else {
-            1e-9
-        };
+        eps = if least < goal { 2.0 * (goal * (goal - least)).sqrt() } else { 1e-9 };
     }
     Ok((y, steps))
 }
@@ -252,15 +220,19 @@ fn homotopies(
     Ok(None)
 }
 
-/// Raises the exponent of a snowflake layout to 1 by Newton steps that never flip.
-fn way_back(
+/// Raises the exponent of a layout made in a snowflake metric to 1, by Newton steps that never flip.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn way_back(
     mesh: &TriMesh,
     metric: &Metric,
     layout: &mut ExactLayout,
     mut y: Vec<f64>,
     from: f64,
-) -> Vec<f64> {
-    y = layout.minimize(y, &SymmetricDirichlet, &SETTLE).y;
+    watch: &mut Watch<'_, '_>,
+) -> Result<Vec<f64>, Cancelled> {
+    y = layout.minimize(y, &SymmetricDirichlet, &SETTLE, watch)?.y;
     for exponent in WAY_BACK.into_iter().filter(|&p| p > from) {
         if exponent < 1.0 {
             layout.set_metric(mesh, &metric.snowflake(mesh, exponent));
@@ -268,9 +240,9 @@ fn way_back(
             layout.set_metric(mesh, metric);
         }
         layout.rescale(&mut y);
-        y = layout.minimize(y, &SymmetricDirichlet, &SETTLE).y;
+        y = layout.minimize(y, &SymmetricDirichlet, &SETTLE, watch)?.y;
     }
-    y
+    Ok(y)
 }
 
 /// The same matchings over a dual tree that crosses few edges where they differ from the isometric
@@ -279,24 +251,14 @@ pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedC
     let curvature = metric.curvature(mesh);
     let mut transport = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
     let mut isometric = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
-    for ((&h, &r), &r0) in matched
-        .cut
-        .seams
-        .iter()
-        .zip(&matched.matching)
-        .zip(&matched.isometric)
-    {
+    for ((&h, &r), &r0) in matched.cut.seams.iter().zip(&matched.matching).zip(&matched.isometric) {
         let Some(t) = mesh.twin(h) else { continue };
         let d = (f64::from(r) - r0).abs();
         (transport[h], transport[t]) = (d, d);
         (isometric[h], isometric[t]) = (r0, -r0);
     }
     let flat = |v| {
-        if mesh.is_boundary(v) {
-            0.0
-        } else {
-            f64::abs(curvature[v])
-        }
+        if mesh.is_boundary(v) { 0.0 } else { f64::abs(curvature[v]) }
     };
     let tree = DualTree::lightest(mesh, |h| {
         1e3 * (transport[h] - 0.5).max(0.0) + flat(mesh.origin(h)).min(flat(mesh.tip(h)))

@@ -40,11 +40,7 @@ impl LinearSpace {
         for row in rows {
             for imaginary in [false, true] {
                 for (&pair, &c) in row {
-                    let (re, im) = if imaginary {
-                        (c.im, c.re)
-                    } else {
-                        (c.re, -c.im)
-                    };
+                    let (re, im) = if imaginary { (c.im, c.re) } else { (c.re, -c.im) };
                     for (column, coefficient) in [(2 * pair, re), (2 * pair + 1, im)] {
                         if coefficient != 0.0 {
                             space.columns.push(column);
@@ -79,15 +75,27 @@ impl LinearSpace {
     pub fn expand(&self, y: &[f64]) -> Vec<Complex64> {
         let coordinate = |row: usize| {
             let (columns, coefficients) = self.row(row);
-            columns
-                .iter()
-                .zip(coefficients)
-                .map(|(&j, c)| c * y[j as usize])
-                .sum::<f64>()
+            columns.iter().zip(coefficients).map(|(&j, c)| c * y[j as usize]).sum::<f64>()
         };
         (0..self.n_wedges())
             .map(|w| Complex64::new(coordinate(2 * w), coordinate(2 * w + 1)))
             .collect()
+    }
+
+    /// The unknowns of wedge positions in a space without seams, which is every wedge but the pinned one:
+    /// everything is moved so that the pinned wedge lies at the origin.
+    pub fn restrict(&self, z: &[Complex64]) -> Vec<f64> {
+        let free = |w: usize| !self.row(2 * w).0.is_empty();
+        let origin = (0..z.len()).find(|&w| !free(w)).map_or(Complex64::ZERO, |w| z[w]);
+        let mut y = vec![0.0; self.n_unknowns];
+        for (w, z) in z.iter().enumerate() {
+            for (row, value) in [(2 * w, (z - origin).re), (2 * w + 1, (z - origin).im)] {
+                if let ([column], [c]) = self.row(row) {
+                    y[*column as usize] = value / c;
+                }
+            }
+        }
+        y
     }
 
     /// Transposed product: a vector per wedge pulled back to the unknowns.
@@ -135,9 +143,7 @@ pub fn seamless_space(
         cut,
         graph,
         matching,
-        rows: (0..cut.n_wedges as u32)
-            .map(|w| Expression::from([(w, Complex64::ONE)]))
-            .collect(),
+        rows: (0..cut.n_wedges as u32).map(|w| Expression::from([(w, Complex64::ONE)])).collect(),
         conditions: Vec::new(),
     };
     for v in mesh.vertices() {
@@ -261,11 +267,8 @@ impl Builder<'_> {
                 solved.insert(pivot, value);
             }
         }
-        let mut rows: Vec<Expression> = self
-            .rows
-            .into_iter()
-            .map(|row| substitute(row, &solved))
-            .collect();
+        let mut rows: Vec<Expression> =
+            self.rows.into_iter().map(|row| substitute(row, &solved)).collect();
         if let Some(pinned) = pinned_variable(&rows, n_wedges, self.graph, self.matching) {
             rows.iter_mut().for_each(|row| {
                 row.remove(&pinned);
@@ -312,19 +315,13 @@ fn pinned_variable(
             uses[variable as usize] += 1;
         }
     }
-    let alone = uses
-        .iter()
-        .position(|&n| n == 1)
-        .or_else(|| uses.iter().position(|&n| n > 0));
+    let alone = uses.iter().position(|&n| n == 1).or_else(|| uses.iter().position(|&n| n > 0));
     alone.map(|w| w as u32).or_else(|| {
         let used: std::collections::BTreeSet<u32> =
             rows.iter().flat_map(|row| row.keys().copied()).collect();
         used.into_iter().find(|&variable| {
             let chain = &graph.chains[(variable - n_wedges) as usize];
-            chain
-                .left
-                .first()
-                .is_some_and(|&h| matching[h].rem_euclid(4) != 0)
+            chain.left.first().is_some_and(|&h| matching[h].rem_euclid(4) != 0)
         })
     })
 }

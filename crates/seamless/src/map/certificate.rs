@@ -17,10 +17,7 @@ pub struct Tolerance {
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self {
-            seam: 1e-9,
-            angle: 1e-3,
-        }
+        Self { seam: 1e-9, angle: 1e-3 }
     }
 }
 
@@ -96,12 +93,7 @@ impl SeamlessMap {
             return Err(Violations(check.violations));
         }
         let (seams, cones, certificate) = check.run(tolerance)?;
-        Ok(Self {
-            corner_uvs,
-            cones,
-            seams,
-            certificate,
-        })
+        Ok(Self { corner_uvs, cones, seams, certificate })
     }
 
     /// One UV per corner, three per face.
@@ -139,34 +131,16 @@ impl<'a> Check<'a> {
         let violations = mesh
             .faces()
             .filter(|f| {
-                corner_uvs[3 * f.at()..3 * f.at() + 3]
-                    .iter()
-                    .flatten()
-                    .any(|x| !x.is_finite())
+                corner_uvs[3 * f.at()..3 * f.at() + 3].iter().flatten().any(|x| !x.is_finite())
             })
             .map(|f| Violation::NonFiniteUv { face: f.0 })
             .collect();
-        let span = corner_uvs
-            .iter()
-            .flatten()
-            .fold(0.0f64, |m, x| m.max(x.abs()));
-        let exponent = if span > 0.0 && span.is_finite() {
-            span.log2().floor()
-        } else {
-            0.0
-        };
+        let span = corner_uvs.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        let exponent = if span > 0.0 && span.is_finite() { span.log2().floor() } else { 0.0 };
         let exponent = exponent.clamp(-1000.0, 1000.0);
         let scale = (-exponent).exp2();
-        let uv = corner_uvs
-            .iter()
-            .map(|p| Complex64::new(p[0] * scale, p[1] * scale))
-            .collect();
-        Self {
-            mesh,
-            uv,
-            unit: exponent.exp2(),
-            violations,
-        }
+        let uv = corner_uvs.iter().map(|p| Complex64::new(p[0] * scale, p[1] * scale)).collect();
+        Self { mesh, uv, unit: exponent.exp2(), violations }
     }
 
     fn edge(&self, h: Halfedge) -> Complex64 {
@@ -203,28 +177,17 @@ impl<'a> Check<'a> {
             });
             let orientation = robust::orient2d(a, b, c);
             if orientation < 0.0 {
-                self.violations
-                    .push(Violation::FlippedTriangle { face: f.0 });
+                self.violations.push(Violation::FlippedTriangle { face: f.0 });
             } else if orientation == 0.0 || orientation.is_nan() {
-                self.violations
-                    .push(Violation::CollapsedTriangle { face: f.0 });
+                self.violations.push(Violation::CollapsedTriangle { face: f.0 });
             }
         }
     }
 
     fn check_seams(&mut self, tolerance: f64) -> (Vec<SeamEdge>, f64) {
         let edges = self.mesh.n_halfedges() as f64;
-        let mean = self
-            .mesh
-            .halfedges()
-            .map(|h| self.edge(h).norm())
-            .sum::<f64>()
-            / edges;
-        let span = self
-            .uv
-            .iter()
-            .map(|z| z.re.abs().max(z.im.abs()))
-            .fold(0.0, f64::max);
+        let mean = self.mesh.halfedges().map(|h| self.edge(h).norm()).sum::<f64>() / edges;
+        let span = self.uv.iter().map(|z| z.re.abs().max(z.im.abs())).fold(0.0, f64::max);
         let allowed = tolerance * mean + 16.0 * f64::EPSILON * span;
         let mut seams = Vec::new();
         let mut largest = 0.0f64;
@@ -287,11 +250,7 @@ impl<'a> Check<'a> {
             let expected = 4 * chi;
             // The boundary's share is a sum of angles; all the rest are integers.
             if !((sum - expected as f64).abs() < 0.5) {
-                self.violations.push(Violation::PoincareHopf {
-                    component,
-                    sum,
-                    expected,
-                });
+                self.violations.push(Violation::PoincareHopf { component, sum, expected });
             }
         }
         (cones, error, sums.iter().sum())
@@ -310,10 +269,7 @@ impl<'a> Check<'a> {
         let off = (angle - nearest * FRAC_PI_2).abs();
         *error = error.max(off);
         if !(off <= tolerance) || nearest < 1.0 {
-            self.violations.push(Violation::ConeAngle {
-                vertex: v.0,
-                quarters,
-            });
+            self.violations.push(Violation::ConeAngle { vertex: v.0, quarters });
         }
         let index = 4 - nearest as i32;
         if index != 0 {
@@ -332,16 +288,10 @@ pub fn compare_source(
 ) -> Vec<Violation> {
     let mut violations = Vec::new();
     if source.0.len() != map.0.len() {
-        violations.push(Violation::VertexCount {
-            source_count: source.0.len(),
-            map: map.0.len(),
-        });
+        violations.push(Violation::VertexCount { source_count: source.0.len(), map: map.0.len() });
     }
     if source.1.len() != map.1.len() {
-        violations.push(Violation::FaceCount {
-            source_count: source.1.len(),
-            map: map.1.len(),
-        });
+        violations.push(Violation::FaceCount { source_count: source.1.len(), map: map.1.len() });
     }
     if !violations.is_empty() {
         return violations;
@@ -349,10 +299,7 @@ pub fn compare_source(
     for (vertex, (a, b)) in source.0.iter().zip(map.0).enumerate() {
         if a != b {
             let distance = (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
-            violations.push(Violation::MovedVertex {
-                vertex: vertex as u32,
-                distance,
-            });
+            violations.push(Violation::MovedVertex { vertex: vertex as u32, distance });
         }
     }
     for (face, (a, b)) in source.1.iter().zip(map.1).enumerate() {

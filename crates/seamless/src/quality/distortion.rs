@@ -21,7 +21,8 @@ pub struct Percentiles {
 /// Distortion of a whole map.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Distortion {
-    /// `sqrt(sigma_1 max / sigma_2 min)`, eq. (3); infinite when a triangle is flipped or collapsed.
+    /// `sqrt(sigma_1 max / sigma_2 min)`, eq. (3); infinite when a triangle is flipped or collapsed,
+    /// not a number when the source has no triangle with area.
     pub tau: f64,
     /// Percentiles of `max(s sigma_1, 1 / (s sigma_2))` at the scale `s` of eq. (3).
     pub tau_t: Percentiles,
@@ -49,11 +50,7 @@ pub fn distortion(mesh: &TriMesh, metric: &Metric, corner_uvs: &[[f64; 2]]) -> D
     let (mut flipped, mut degenerate) = (0, 0);
     for f in mesh.faces() {
         let [_, p, q] = metric.flat[f];
-        let longest = f
-            .halfedges()
-            .map(|h| metric.length[h])
-            .into_iter()
-            .fold(0.0, f64::max);
+        let longest = f.halfedges().map(|h| metric.length[h]).into_iter().fold(0.0, f64::max);
         if 2.0 * metric.area[f] <= DEGENERATE * longest * longest {
             degenerate += 1;
             continue;
@@ -82,17 +79,12 @@ fn summarize(values: &[(f64, f64, f64)], flipped: usize, degenerate: usize) -> D
     let largest = values.iter().map(|v| v.0).fold(0.0, f64::max);
     let smallest = values.iter().map(|v| v.1).fold(f64::INFINITY, f64::min);
     let scale = 1.0 / (largest * smallest).sqrt();
-    let mut worst: Vec<f64> = values
-        .iter()
-        .map(|&(s1, s2, _)| (scale * s1).max(1.0 / (scale * s2)))
-        .collect();
+    let mut worst: Vec<f64> =
+        values.iter().map(|&(s1, s2, _)| (scale * s1).max(1.0 / (scale * s2))).collect();
     worst.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| {
         let last = worst.len().saturating_sub(1) as f64;
-        worst
-            .get((share * last) as usize)
-            .copied()
-            .unwrap_or(f64::NAN)
+        worst.get((share * last) as usize).copied().unwrap_or(f64::NAN)
     };
     let area: f64 = values.iter().map(|v| v.2).sum();
     let mean = |g: &dyn Fn(f64, f64) -> f64| {
@@ -102,21 +94,17 @@ fn summarize(values: &[(f64, f64, f64)], flipped: usize, degenerate: usize) -> D
     let inverse_squares = mean(&|s1, s2| 1.0 / (s1 * s1) + 1.0 / (s2 * s2));
     let sums = mean(&|s1, s2| s1 + s2);
     Distortion {
-        tau: if flipped > 0 {
-            f64::INFINITY
-        } else {
-            (largest / smallest).sqrt()
+        tau: match (flipped, values.is_empty()) {
+            (0, true) => f64::NAN,
+            (0, false) => (largest / smallest).sqrt(),
+            _ => f64::INFINITY,
         },
-        tau_t: Percentiles {
-            p50: at(0.5),
-            p95: at(0.95),
-            p99: at(0.99),
-        },
+        tau_t: Percentiles { p50: at(0.5), p95: at(0.95), p99: at(0.99) },
         sigma_1_max: largest,
         sigma_2_min: smallest,
         // min over s of s^2 a + b / s^2 and of s^2 a - 2 s c + 2
         symmetric_dirichlet: 2.0 * (squares * inverse_squares).sqrt(),
-        arap: 2.0 - sums * sums / squares,
+        arap: (2.0 - sums * sums / squares).max(0.0),
         measured: values.len(),
         flipped,
         degenerate,
@@ -128,12 +116,7 @@ mod tests {
     use super::*;
 
     fn measure(map: impl Fn([f64; 2]) -> [f64; 2]) -> Distortion {
-        let positions = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [0.0, 1.0, 0.0],
-        ];
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let faces = [[0, 1, 2], [0, 2, 3]];
         let mesh = TriMesh::from_faces(4, &faces).unwrap();
         let metric = Metric::from_positions(&mesh, &positions);

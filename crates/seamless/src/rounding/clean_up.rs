@@ -69,10 +69,7 @@ pub fn clean_up(
 ) -> Result<(CleanUpStats, FaceData<i32>), CleanUpError> {
     let index = matched.cone_indices(mesh, metric);
     let mut work = CleanUp::new(mesh, metric, index, *options)?;
-    let mut stats = CleanUpStats {
-        cones_before: work.n_cones(),
-        ..Default::default()
-    };
+    let mut stats = CleanUpStats { cones_before: work.n_cones(), ..Default::default() };
     for sweep in 0..SWEEPS {
         watch.tick(sweep as f64 / SWEEPS as f64)?;
         let (cancelled, moved) = (work.cancel(), work.move_cones());
@@ -122,11 +119,7 @@ impl<'a> CleanUp<'a> {
     ) -> Result<Self, NotPositiveDefinite> {
         Ok(Self {
             surrogate: Surrogate::new(mesh, metric, &index)?,
-            curvature: metric
-                .curvature(mesh)
-                .iter()
-                .map(|k| k / FRAC_PI_2)
-                .collect(),
+            curvature: metric.curvature(mesh).iter().map(|k| k / FRAC_PI_2).collect(),
             transport: HalfedgeData::filled(mesh.n_halfedges(), 0),
             responses: HashMap::new(),
             mesh,
@@ -141,10 +134,7 @@ impl<'a> CleanUp<'a> {
     }
 
     fn cones(&self) -> Vec<Vertex> {
-        self.mesh
-            .vertices()
-            .filter(|&v| self.index[v] != 0)
-            .collect()
+        self.mesh.vertices().filter(|&v| self.index[v] != 0).collect()
     }
 
     fn allows(&self, v: Vertex, index: i32) -> bool {
@@ -188,11 +178,7 @@ impl<'a> CleanUp<'a> {
             return f64::INFINITY;
         };
         let [low, high] = response.scale;
-        let (at_from, at_to) = if from < to {
-            (low, high)
-        } else {
-            (-high, -low)
-        };
+        let (at_from, at_to) = if from < to { (low, high) } else { (-high, -low) };
         let now = [self.surrogate.scale(from), self.surrogate.scale(to)];
         let largest = |u: [f64; 2]| u[0].abs().max(u[1].abs());
         if largest([now[0] + at_from, now[1] + at_to])
@@ -225,10 +211,8 @@ impl<'a> CleanUp<'a> {
         }
         let keys: Vec<_> = pairs.keys().copied().collect();
         self.prepare(&keys);
-        let mut order: Vec<(f64, Vertex, Vertex)> = keys
-            .into_iter()
-            .map(|(a, b)| (self.change(a, b), a, b))
-            .collect();
+        let mut order: Vec<(f64, Vertex, Vertex)> =
+            keys.into_iter().map(|(a, b)| (self.change(a, b), a, b)).collect();
         order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut count = 0;
         for (_, from, to) in order {
@@ -260,11 +244,7 @@ impl<'a> CleanUp<'a> {
             if found.len() == PARTNERS || visited > SEARCH_LIMIT {
                 break;
             }
-            for h in self
-                .mesh
-                .outgoing(v)
-                .filter(|&h| self.mesh.twin(h).is_some())
-            {
+            for h in self.mesh.outgoing(v).filter(|&h| self.mesh.twin(h).is_some()) {
                 let (w, reach) = (self.mesh.tip(h), d + self.metric.length[h]);
                 if reached.get(&w).is_none_or(|r| reach < r.0) {
                     reached.insert(w, (reach, Some(h)));
@@ -293,11 +273,7 @@ impl<'a> CleanUp<'a> {
         let mut total = 0;
         for _ in 0..MOVES {
             // Most steps stay the best ones until their turn comes: find their responses together.
-            let steps: Vec<_> = self
-                .cones()
-                .into_iter()
-                .flat_map(|v| self.steps(v))
-                .collect();
+            let steps: Vec<_> = self.cones().into_iter().flat_map(|v| self.steps(v)).collect();
             self.prepare(&steps.iter().map(|&(a, b, _)| (a, b)).collect::<Vec<_>>());
             let mut count = 0;
             for v in self.cones() {

@@ -44,18 +44,13 @@ pub fn fix_holonomy(
     let columns: Vec<Vec<f64>> = cycles
         .par_iter()
         .map(|cycle| {
-            let flow: Vec<_> = cycle
-                .iter()
-                .map(|&(s, sign)| (s, f64::from(sign)))
-                .collect();
+            let flow: Vec<_> = cycle.iter().map(|&(s, sign)| (s, f64::from(sign))).collect();
             projector.residual(&flow)
         })
         .collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let gram: Vec<Vec<f64>> = columns
-        .par_iter()
-        .map(|a| columns.iter().map(|b| dot(a, b)).collect())
-        .collect();
+    let gram: Vec<Vec<f64>> =
+        columns.par_iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
     let rhs: Vec<f64> = columns.iter().map(|a| dot(a, &target)).collect();
     let multiples = closest_integers(&gram, &rhs);
     for (cycle, &n) in cycles.iter().zip(&multiples) {
@@ -70,12 +65,8 @@ pub fn fix_holonomy(
 fn seam_cycles(mesh: &TriMesh, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
     let boundary = mesh.n_vertices() as u32;
     let id = |v: seamstress_surface::Vertex| if mesh.is_boundary(v) { boundary } else { v.0 };
-    let ends: Vec<[u32; 2]> = matched
-        .cut
-        .seams
-        .iter()
-        .map(|&h| [id(mesh.origin(h)), id(mesh.tip(h))])
-        .collect();
+    let ends: Vec<[u32; 2]> =
+        matched.cut.seams.iter().map(|&h| [id(mesh.origin(h)), id(mesh.tip(h))]).collect();
     let mut at = vec![Vec::new(); mesh.n_vertices() + 1];
     for (s, &[a, b]) in ends.iter().enumerate() {
         at[a as usize].push((b, s as u32, 1));
@@ -120,10 +111,7 @@ fn seam_cycles(mesh: &TriMesh, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
         }
         cycle
     };
-    (0..ends.len())
-        .filter(|&s| !in_forest[s])
-        .map(close)
-        .collect()
+    (0..ends.len()).filter(|&s| !in_forest[s]).map(close).collect()
 }
 
 /// Projects flows on dual edges to their part that no rotation of faces can remove.
@@ -172,23 +160,9 @@ impl<'a> Projector<'a> {
         let mut cholesky = Cholesky::analyze(&pattern, &order)?;
         cholesky.factorize(&pattern, &matrix)?;
         let mut seam_number = vec![0u32; mesh.n_halfedges()];
-        edges
-            .iter()
-            .enumerate()
-            .for_each(|(e, &h)| seam_number[h.at()] = e as u32);
-        let edge_of_seam = matched
-            .cut
-            .seams
-            .iter()
-            .map(|&h| seam_number[h.at()])
-            .collect();
-        Ok(Self {
-            mesh,
-            edges,
-            edge_of_seam,
-            weights,
-            cholesky,
-        })
+        edges.iter().enumerate().for_each(|(e, &h)| seam_number[h.at()] = e as u32);
+        let edge_of_seam = matched.cut.seams.iter().map(|&h| seam_number[h.at()]).collect();
+        Ok(Self { mesh, edges, edge_of_seam, weights, cholesky })
     }
 
     /// Square root of the weight times the remaining flow, per interior edge.
@@ -230,11 +204,7 @@ fn closest_integers(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
         (0..n.len()).map(value).sum::<f64>()
     };
     let [first, second] = starts.map(|start| descend(q, b, start));
-    if energy(&second) < energy(&first) {
-        second
-    } else {
-        first
-    }
+    if energy(&second) < energy(&first) { second } else { first }
 }
 
 /// Rounded solution of `Q n = b` (Gauss-Seidel: Q is well conditioned and small).
@@ -246,27 +216,17 @@ fn round_real_minimum(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
             x[i] += (b[i] - row) / q[i][i].max(1e-12);
         }
     }
-    x.into_iter()
-        .map(|x| x.round().clamp(-1e6, 1e6) as i32)
-        .collect()
+    x.into_iter().map(|x| x.round().clamp(-1e6, 1e6) as i32).collect()
 }
 
 fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
     // Half the gradient.
     let mut g: Vec<f64> = (0..b.len())
-        .map(|i| {
-            q[i].iter()
-                .zip(&n)
-                .map(|(q, &n)| q * f64::from(n))
-                .sum::<f64>()
-                - b[i]
-        })
+        .map(|i| q[i].iter().zip(&n).map(|(q, &n)| q * f64::from(n)).sum::<f64>() - b[i])
         .collect();
     let step = |n: &mut [i32], g: &mut [f64], i: usize, by: i32| {
         n[i] += by;
-        g.iter_mut()
-            .zip(q)
-            .for_each(|(g, row)| *g += f64::from(by) * row[i]);
+        g.iter_mut().zip(q).for_each(|(g, row)| *g += f64::from(by) * row[i]);
     };
     for _ in 0..PASSES {
         let mut improved = false;

@@ -25,21 +25,13 @@ impl MatchedCut {
         let cut = Cut::new(mesh, |h| tree.crossed[h]);
         let isometric = isometric::seam_rotations(mesh, metric, &tree, &cut);
         let matching = isometric.iter().map(|r| r.round() as i32).collect();
-        Self {
-            tree,
-            cut,
-            isometric,
-            matching,
-        }
+        Self { tree, cut, isometric, matching }
     }
 
     /// The same matchings over another metric of the same mesh.
     pub fn with_metric(&self, mesh: &TriMesh, metric: &Metric) -> Self {
         let isometric = isometric::seam_rotations(mesh, metric, &self.tree, &self.cut);
-        Self {
-            isometric,
-            ..self.clone()
-        }
+        Self { isometric, ..self.clone() }
     }
 
     /// Index of every vertex, in quarters, for seam rotations `r` (any reals):
@@ -48,11 +40,8 @@ impl MatchedCut {
     /// At integer matchings the index of an interior vertex is an integer; the sum over all vertices is
     /// 4 chi.
     pub fn indices(&self, mesh: &TriMesh, metric: &Metric, r: &[f64]) -> VertexData<f64> {
-        let mut k: VertexData<f64> = metric
-            .curvature(mesh)
-            .iter()
-            .map(|defect| defect / FRAC_PI_2)
-            .collect();
+        let mut k: VertexData<f64> =
+            metric.curvature(mesh).iter().map(|defect| defect / FRAC_PI_2).collect();
         for (s, &h) in self.cut.seams.iter().enumerate() {
             let d = r[s] - self.isometric[s];
             k[mesh.origin(h)] -= d;
@@ -65,15 +54,7 @@ impl MatchedCut {
     pub fn cone_indices(&self, mesh: &TriMesh, metric: &Metric) -> VertexData<i32> {
         let r: Vec<f64> = self.matching.iter().map(|&r| f64::from(r)).collect();
         let k = self.indices(mesh, metric, &r);
-        mesh.vertices()
-            .map(|v| {
-                if mesh.is_boundary(v) {
-                    0
-                } else {
-                    k[v].round() as i32
-                }
-            })
-            .collect()
+        mesh.vertices().map(|v| if mesh.is_boundary(v) { 0 } else { k[v].round() as i32 }).collect()
     }
 
     /// The matchings per half-edge: negated on twins, zero across the tree.

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
-use seamstress_surface::{Halfedge, Metric, TriMesh};
+use seamstress_surface::{Halfedge, Metric, TriMesh, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
 /// Weight of the rows that hold a rounded seam closed; the rigidity energy has weights of order one.
@@ -47,15 +47,9 @@ impl Relaxation {
         z: Vec<Complex64>,
     ) -> Result<Self, NotPositiveDefinite> {
         let n = cut.n_wedges;
-        let seams: Vec<[u32; 4]> = cut
-            .seams
-            .iter()
-            .map(|&h| cut.seam_wedges(mesh, h))
-            .collect();
-        let faces: Vec<[u32; 3]> = mesh
-            .faces()
-            .map(|f| f.halfedges().map(|h| cut.wedge[h]))
-            .collect();
+        let seams: Vec<[u32; 4]> = cut.seams.iter().map(|&h| cut.seam_wedges(mesh, h)).collect();
+        let faces: Vec<[u32; 3]> =
+            mesh.faces().map(|f| f.halfedges().map(|h| cut.wedge[h])).collect();
         let mut builder = PatternBuilder::new(n);
         faces.iter().for_each(|w| builder.add_clique(w));
         seams.iter().for_each(|w| builder.add_clique(w));
@@ -78,10 +72,7 @@ impl Relaxation {
         let cotangent = metric.cotangent();
         for h in mesh.halfedges() {
             let [a, b] = cut.ends(h);
-            relaxation.add_row(
-                &[(a, -Complex64::ONE), (b, Complex64::ONE)],
-                cotangent[h] / 2.0,
-            );
+            relaxation.add_row(&[(a, -Complex64::ONE), (b, Complex64::ONE)], cotangent[h] / 2.0);
         }
         for &k in relaxation.pattern.diagonal() {
             relaxation.matrix[k as usize] += SHIFT;
@@ -145,31 +136,21 @@ impl Relaxation {
 
     fn local_step(&mut self) {
         let (z, wedges, weights) = (&self.z, &self.wedge_of_corner, &self.corner_weights);
-        self.frames
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(4096)
-            .for_each(|(f, frame)| {
-                let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
-                let best = direction(term(3 * f) + term(3 * f + 1) + term(3 * f + 2));
-                *frame = direction(best + OVERSHOOT * (best - *frame));
-            });
+        self.frames.par_iter_mut().enumerate().with_min_len(4096).for_each(|(f, frame)| {
+            let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
+            let best = direction(term(3 * f) + term(3 * f + 1) + term(3 * f + 2));
+            *frame = direction(best + OVERSHOOT * (best - *frame));
+        });
     }
 
     fn right_hand_side(&mut self) {
         let (frames, weights) = (&self.frames, &self.corner_weights);
         let (corners, offsets) = (&self.corners_of_wedge, &self.wedge_offsets);
-        self.z
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(4096)
-            .for_each(|(w, out)| {
-                let range = offsets[w] as usize..offsets[w + 1] as usize;
-                *out = corners[range]
-                    .iter()
-                    .map(|&c| frames[c as usize / 3] * weights[c as usize])
-                    .sum();
-            });
+        self.z.par_iter_mut().enumerate().with_min_len(4096).for_each(|(w, out)| {
+            let range = offsets[w] as usize..offsets[w + 1] as usize;
+            *out =
+                corners[range].iter().map(|&c| frames[c as usize / 3] * weights[c as usize]).sum();
+        });
     }
 
     /// Rotation of a seam in the layout, lifted to the branch nearest to `last`; quarter turns.
@@ -177,6 +158,25 @@ impl Relaxation {
         let [a, b, c, d] = self.seams[seam].map(|w| self.z[w as usize]);
         let r = ((d - c) * (b - a).conj()).arg() / FRAC_PI_2;
         last + (r - last + 2.0).rem_euclid(4.0) - 2.0
+    }
+
+    /// Logarithm of the scale of the layout at each vertex, an area-weighted mean over its faces.
+    pub(super) fn log_scale(&self, mesh: &TriMesh, metric: &Metric) -> VertexData<f64> {
+        let mut sum = VertexData::filled(mesh.n_vertices(), 0.0);
+        let mut area = VertexData::filled(mesh.n_vertices(), 0.0);
+        for f in mesh.faces() {
+            let term = |h: Halfedge| {
+                self.z[self.wedge_of_corner[h.at()] as usize] * self.corner_weights[h.at()].conj()
+            };
+            let similar: Complex64 = f.halfedges().map(term).iter().sum();
+            // An isometric layout has twice the area here.
+            let scale = similar.norm() / (2.0 * metric.area[f]);
+            for v in mesh.face_vertices(f) {
+                sum[v] += metric.area[f] * scale.max(1e-3).ln();
+                area[v] += metric.area[f];
+            }
+        }
+        mesh.vertices().map(|v| sum[v] / area[v]).collect()
     }
 
     /// Rotations of the faces in the layout.
@@ -198,8 +198,7 @@ fn corner_weights(mesh: &TriMesh, metric: &Metric) -> Vec<Complex64> {
 
 fn wedge_graph(n: usize, faces: &[[u32; 3]], seams: &[[u32; 4]]) -> Graph {
     let face_edges = faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-    let seam_edges = seams
-        .iter()
-        .flat_map(|&[a, b, c, d]| [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)]);
+    let seam_edges =
+        seams.iter().flat_map(|&[a, b, c, d]| [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)]);
     Graph::from_edges(n, face_edges.chain(seam_edges))
 }

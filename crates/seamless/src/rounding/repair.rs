@@ -19,17 +19,11 @@ pub fn index_bounds(valence: usize) -> (i32, i32) {
 /// it, the boundary included.
 pub fn repair(mesh: &TriMesh, metric: &Metric, matched: &mut MatchedCut) -> (usize, Vec<Vertex>) {
     let mut index = matched.cone_indices(mesh, metric);
-    let bounds: VertexData<(i32, i32)> = mesh
-        .vertices()
-        .map(|v| index_bounds(mesh.valence(v)))
-        .collect();
+    let bounds: VertexData<(i32, i32)> =
+        mesh.vertices().map(|v| index_bounds(mesh.valence(v))).collect();
     let excess = |index: &VertexData<i32>, v: Vertex| {
         let (low, high) = bounds[v];
-        if mesh.is_boundary(v) {
-            0
-        } else {
-            (index[v] - high).max(0) - (low - index[v]).max(0)
-        }
+        if mesh.is_boundary(v) { 0 } else { (index[v] - high).max(0) - (low - index[v]).max(0) }
     };
     let mut seams_at = VertexData::filled(mesh.n_vertices(), Vec::new());
     for (s, &h) in matched.cut.seams.iter().enumerate() {

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Cholesky, NotPositiveDefinite, PatternBuilder};
-use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
+use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
 /// Estimate of the excess distortion of the best map with given cones.
@@ -54,33 +54,24 @@ impl<'a> Surrogate<'a> {
         let mut builder = PatternBuilder::new(n);
         mesh.edges().for_each(|h| builder.add_clique(&ends(h)));
         let pattern = builder.build();
-        let edges = mesh
-            .edges()
-            .map(|h| (mesh.origin(h).0, mesh.tip(h).0))
-            .collect::<Vec<_>>();
+        let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
         let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
         let mut cholesky = Cholesky::analyze(&pattern, &order)?;
         let cotangent = metric.cotangent();
         let closed = !mesh.has_boundary();
         // Fixed vertices keep a row of their own with a large diagonal.
         let fixed = |v: Vertex| {
-            if closed {
-                v.0 == 0
-            } else {
-                mesh.is_boundary(v)
-            }
+            if closed { v.0 == 0 } else { mesh.is_boundary(v) }
         };
         let mut matrix = vec![0.0; pattern.len()];
         for h in mesh.edges() {
-            let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
-            let weight = (sum / 2.0).clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1);
+            let weight = edge_weight(mesh, &cotangent, h);
             let [a, b] = ends(h);
             for v in [a, b] {
                 matrix[pattern.diagonal()[v as usize] as usize] += weight;
             }
-            if let Some(slot) = pattern
-                .slot(a, b)
-                .filter(|_| !fixed(Vertex(a)) && !fixed(Vertex(b)))
+            if let Some(slot) =
+                pattern.slot(a, b).filter(|_| !fixed(Vertex(a)) && !fixed(Vertex(b)))
             {
                 matrix[slot as usize] -= weight;
             }
@@ -88,15 +79,8 @@ impl<'a> Surrogate<'a> {
         cholesky.factorize(&pattern, &matrix)?;
         let area = metric.vertex_area(mesh);
         let total = area.iter().sum();
-        let mut surrogate = Self {
-            mesh,
-            area,
-            total,
-            closed,
-            cholesky,
-            scale: Vec::new(),
-            gradient: Vec::new(),
-        };
+        let mut surrogate =
+            Self { mesh, area, total, closed, cholesky, scale: Vec::new(), gradient: Vec::new() };
         let excess: Vec<f64> = metric
             .curvature(mesh)
             .enumerate()
@@ -108,11 +92,7 @@ impl<'a> Surrogate<'a> {
     }
 
     fn is_fixed(&self, v: Vertex) -> bool {
-        if self.closed {
-            v.0 == 0
-        } else {
-            self.mesh.is_boundary(v)
-        }
+        if self.closed { v.0 == 0 } else { self.mesh.is_boundary(v) }
     }
 
     fn weighted(&self, u: &[f64]) -> Vec<f64> {
@@ -131,9 +111,7 @@ impl<'a> Surrogate<'a> {
     fn prepare(&self, b: &mut [f64]) {
         if self.closed {
             let mean = b.iter().sum::<f64>() / self.total;
-            b.iter_mut()
-                .zip(self.area.iter())
-                .for_each(|(b, m)| *b -= mean * m);
+            b.iter_mut().zip(self.area.iter()).for_each(|(b, m)| *b -= mean * m);
         }
         self.hold(b);
     }
@@ -146,12 +124,7 @@ impl<'a> Surrogate<'a> {
 
     fn center(&self, u: &mut [f64]) {
         if self.closed {
-            let mean = u
-                .iter()
-                .zip(self.area.iter())
-                .map(|(u, m)| u * m)
-                .sum::<f64>()
-                / self.total;
+            let mean = u.iter().zip(self.area.iter()).map(|(u, m)| u * m).sum::<f64>() / self.total;
             u.iter_mut().for_each(|u| *u -= mean);
         }
     }
@@ -166,22 +139,14 @@ impl<'a> Surrogate<'a> {
 
     /// The energy.
     pub fn energy(&self) -> f64 {
-        let squares = self
-            .scale
-            .iter()
-            .zip(self.area.iter())
-            .map(|(u, m)| m * u * u);
+        let squares = self.scale.iter().zip(self.area.iter()).map(|(u, m)| m * u * u);
         8.0 / self.total * squares.sum::<f64>()
     }
 
     /// First-order change of the energy when one unit of index goes from one vertex to another.
     pub fn linear(&self, from: Vertex, to: Vertex) -> f64 {
         let at = |v: Vertex| {
-            if self.mesh.is_boundary(v) {
-                0.0
-            } else {
-                self.gradient[v.at()]
-            }
+            if self.mesh.is_boundary(v) { 0.0 } else { self.gradient[v.at()] }
         };
         8.0 / self.total * 2.0 * FRAC_PI_2 * (at(from) - at(to))
     }
@@ -198,10 +163,7 @@ impl<'a> Surrogate<'a> {
                     self.add_dipole(from, to, column);
                     self.hold(column);
                 }
-                let solved = self
-                    .cholesky
-                    .solve_columns(&mut columns, chunk.len())
-                    .is_ok();
+                let solved = self.cholesky.solve_columns(&mut columns, chunk.len()).is_ok();
                 let area = &self.area;
                 let values: Vec<Response> = columns
                     .chunks_mut(n)
@@ -231,14 +193,14 @@ impl<'a> Surrogate<'a> {
         let mut curvature = vec![0.0; self.mesh.n_vertices()];
         self.add_dipole(from, to, &mut curvature);
         let change = self.solve(curvature);
-        self.scale
-            .iter_mut()
-            .zip(&change)
-            .for_each(|(u, d)| *u += d);
+        self.scale.iter_mut().zip(&change).for_each(|(u, d)| *u += d);
         let second = self.solve(self.weighted(&change));
-        self.gradient
-            .iter_mut()
-            .zip(&second)
-            .for_each(|(g, d)| *g += d);
+        self.gradient.iter_mut().zip(&second).for_each(|(g, d)| *g += d);
     }
+}
+
+/// Cotangent weight of an edge, kept within [`WEIGHT_RANGE`].
+pub(super) fn edge_weight(mesh: &TriMesh, cotangent: &HalfedgeData<f64>, h: Halfedge) -> f64 {
+    let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
+    (sum / 2.0).clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1)
 }

@@ -34,9 +34,7 @@ impl Report {
     }
 
     fn of_severity(&self, severity: Severity) -> impl Iterator<Item = &Fault> {
-        self.faults
-            .iter()
-            .filter(move |fault| fault.severity() == severity)
+        self.faults.iter().filter(move |fault| fault.severity() == severity)
     }
 }
 
@@ -53,10 +51,7 @@ impl Report {
 pub fn check(soup: &TriangleSoup) -> Report {
     let mut faults = size_faults(soup.positions.len(), soup.faces.len());
     if faults.iter().any(|fault| *fault != Fault::NoFaces) {
-        return Report {
-            faults,
-            facts: Facts::counting(soup),
-        };
+        return Report { faults, facts: Facts::counting(soup) };
     }
     let mut live = face_faults(soup, &mut faults);
     let mut opposite = Vec::new();
@@ -65,10 +60,7 @@ pub fn check(soup: &TriangleSoup) -> Report {
             opposite.push(twin);
         } else {
             live[twin.face as usize] = false;
-            faults.push(Fault::DuplicateFace {
-                face: twin.face,
-                first: twin.first,
-            });
+            faults.push(Fault::DuplicateFace { face: twin.face, first: twin.first });
         }
     }
     let topology = Topology::new(soup, &live);
@@ -77,10 +69,7 @@ pub fn check(soup: &TriangleSoup) -> Report {
         opposite
             .iter()
             .filter(|twin| crowded[twin.face as usize])
-            .map(|twin| Fault::OppositeFace {
-                face: twin.face,
-                first: twin.first,
-            }),
+            .map(|twin| Fault::OppositeFace { face: twin.face, first: twin.first }),
     );
     faults_of_edges_and_fans(&topology, &mut faults);
     geometric_warnings(&topology, &mut faults);
@@ -94,16 +83,10 @@ fn size_faults(n_vertices: usize, n_faces: usize) -> Vec<Fault> {
         faults.push(Fault::NoFaces);
     }
     if n_faces > MAX_FACES {
-        faults.push(Fault::TooManyFaces {
-            n_faces,
-            limit: MAX_FACES,
-        });
+        faults.push(Fault::TooManyFaces { n_faces, limit: MAX_FACES });
     }
     if n_vertices > MAX_VERTICES {
-        faults.push(Fault::TooManyVertices {
-            n_vertices,
-            limit: MAX_VERTICES,
-        });
+        faults.push(Fault::TooManyVertices { n_vertices, limit: MAX_VERTICES });
     }
     faults
 }
@@ -113,11 +96,7 @@ fn face_faults(soup: &TriangleSoup, faults: &mut Vec<Fault>) -> Vec<bool> {
     let n_vertices = soup.positions.len();
     for (&triple, face) in soup.faces.iter().zip(0u32..) {
         for index in triple.into_iter().filter(|&v| v as usize >= n_vertices) {
-            faults.push(Fault::IndexOutOfRange {
-                face,
-                index,
-                n_vertices,
-            });
+            faults.push(Fault::IndexOutOfRange { face, index, n_vertices });
         }
     }
     for (&position, vertex) in soup.positions.iter().zip(0u32..) {
@@ -150,11 +129,7 @@ pub(super) fn repeated([a, b, c]: [u32; 3]) -> Option<u32> {
 /// Which faces have an edge that more than two faces share.
 pub(super) fn crowded_faces(connectivity: &Connectivity, n_faces: usize) -> Vec<bool> {
     let mut crowded = vec![false; n_faces];
-    for side in connectivity
-        .edges()
-        .filter(|sides| sides.len() > 2)
-        .flatten()
-    {
+    for side in connectivity.edges().filter(|sides| sides.len() > 2).flatten() {
         crowded[side.face() as usize] = true;
     }
     crowded
@@ -164,26 +139,17 @@ fn faults_of_edges_and_fans(topology: &Topology, faults: &mut Vec<Fault>) {
     let connectivity = &topology.connectivity;
     for sides in connectivity.edges().filter(|sides| sides.len() > 2) {
         let faces = sides.iter().map(|side| side.face()).collect();
-        faults.push(Fault::NonManifoldEdge {
-            vertices: sides[0].edge,
-            faces,
-        });
+        faults.push(Fault::NonManifoldEdge { vertices: sides[0].edge, faces });
     }
     for (&fans, vertex) in topology.fans_at_vertex.iter().zip(0u32..) {
         if fans > 1 {
-            faults.push(Fault::NonManifoldVertex {
-                vertex,
-                fans: fans as usize,
-            });
+            faults.push(Fault::NonManifoldVertex { vertex, fans: fans as usize });
         }
     }
     let clash = |sides: &[Side]| match connectivity.pair(sides) {
         Some((a, b, true)) => {
             let faces = [a.face(), b.face()];
-            Some(Fault::InconsistentOrientation {
-                edge: a.edge,
-                faces,
-            })
+            Some(Fault::InconsistentOrientation { edge: a.edge, faces })
         }
         _ => None,
     };

@@ -24,20 +24,12 @@ impl Side {
     /// The corners of its face at `edge[0]` and at `edge[1]`.
     fn corners_at_ends(self, faces: &[[u32; 3]]) -> [u32; 2] {
         let next = next_corner(self.corner);
-        if self.is_forward(faces) {
-            [self.corner, next]
-        } else {
-            [next, self.corner]
-        }
+        if self.is_forward(faces) { [self.corner, next] } else { [next, self.corner] }
     }
 }
 
 fn next_corner(corner: u32) -> u32 {
-    if corner % 3 == 2 {
-        corner - 2
-    } else {
-        corner + 1
-    }
+    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
 /// The sides of the live faces of a soup, sorted by edge and then by face.
@@ -54,10 +46,7 @@ impl<'a> Connectivity<'a> {
         for (face, triple) in faces.iter().enumerate().filter(|&(face, _)| live[face]) {
             for k in 0..3 {
                 let (a, b) = (triple[k], triple[(k + 1) % 3]);
-                sides.push(Side {
-                    edge: [a.min(b), a.max(b)],
-                    corner: (3 * face + k) as u32,
-                });
+                sides.push(Side { edge: [a.min(b), a.max(b)], corner: (3 * face + k) as u32 });
             }
         }
         sides.sort_unstable();
@@ -121,19 +110,12 @@ impl<'a> Connectivity<'a> {
             }
         }
         // A patch may have grown after a conflict was found: name it by its final lowest face.
-        let mut not_orientable: Vec<(u32, [u32; 2])> = conflicts
-            .into_iter()
-            .map(|side| (sets.find(side.face()).0, side.edge))
-            .collect();
+        let mut not_orientable: Vec<(u32, [u32; 2])> =
+            conflicts.into_iter().map(|side| (sets.find(side.face()).0, side.edge)).collect();
         not_orientable.sort_unstable();
         not_orientable.dedup_by_key(|&mut (patch, _)| patch);
-        let of_face = (0..self.faces.len() as u32)
-            .map(|face| sets.find(face))
-            .collect();
-        Patches {
-            of_face,
-            not_orientable,
-        }
+        let of_face = (0..self.faces.len() as u32).map(|face| sets.find(face)).collect();
+        Patches { of_face, not_orientable }
     }
 }
 
@@ -173,23 +155,11 @@ pub(super) fn twins(faces: &[[u32; 3]], live: &[bool]) -> Vec<Twin> {
         for &(_, face) in &group[1..] {
             let reversed = is_even(faces[face as usize]) != is_even(faces[first as usize]);
             twins.push(match (reversed, reverse) {
-                (false, _) => Twin {
-                    face,
-                    first,
-                    reversed: false,
-                },
-                (true, Some(original)) => Twin {
-                    face,
-                    first: original,
-                    reversed: false,
-                },
+                (false, _) => Twin { face, first, reversed: false },
+                (true, Some(original)) => Twin { face, first: original, reversed: false },
                 (true, None) => {
                     reverse = Some(face);
-                    Twin {
-                        face,
-                        first,
-                        reversed: true,
-                    }
+                    Twin { face, first, reversed: true }
                 }
             });
         }
@@ -227,21 +197,9 @@ mod tests {
         let faces = [[0, 1, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [0, 1, 3]];
         let found = twins(&faces, &[true; 5]);
         let expected = [
-            Twin {
-                face: 1,
-                first: 0,
-                reversed: true,
-            },
-            Twin {
-                face: 2,
-                first: 1,
-                reversed: false,
-            },
-            Twin {
-                face: 3,
-                first: 0,
-                reversed: false,
-            },
+            Twin { face: 1, first: 0, reversed: true },
+            Twin { face: 2, first: 1, reversed: false },
+            Twin { face: 3, first: 0, reversed: false },
         ];
         assert_eq!(found, expected);
     }

@@ -89,11 +89,7 @@ impl<'a> Clipper<'a> {
         let [a, _, c] = triangle.map(|i| self.polygon[i]);
         if self.is_convex(corner) && !self.edges.contain(a, c) {
             let min_angle = shape(triangle.map(|i| self.local.points[i])).min_angle;
-            self.ears.push(Ear {
-                min_angle,
-                corner,
-                age: self.age[corner],
-            });
+            self.ears.push(Ear { min_angle, corner, age: self.age[corner] });
         }
     }
 
@@ -134,8 +130,7 @@ impl<'a> Clipper<'a> {
             let at = self.blocking.iter().position(|&i| i == neighbour);
             if let Some(at) = at.filter(|_| self.is_convex(neighbour)) {
                 self.blocking.swap_remove(at);
-                self.ears
-                    .append(&mut self.waiting[neighbour].drain(..).collect());
+                self.ears.append(&mut self.waiting[neighbour].drain(..).collect());
             }
         }
     }
@@ -152,9 +147,7 @@ struct Ear {
 impl Ord for Ear {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_angle = self.min_angle.total_cmp(&other.min_angle);
-        by_angle
-            .then(other.corner.cmp(&self.corner))
-            .then(self.age.cmp(&other.age))
+        by_angle.then(other.corner.cmp(&self.corner)).then(self.age.cmp(&other.age))
     }
 }
 
@@ -179,41 +172,23 @@ mod tests {
     /// Splits one polygon of the plane, tilted into space, and asserts that its triangles are a
     /// disk that covers it exactly.
     fn split(outline: &[[f64; 2]]) -> Triangulation {
-        let positions: Vec<[f64; 3]> = outline
-            .iter()
-            .map(|&[x, y]| [x + 10.0, 0.6 * y, 0.8 * y])
-            .collect();
+        let positions: Vec<[f64; 3]> =
+            outline.iter().map(|&[x, y]| [x + 10.0, 0.6 * y, 0.8 * y]).collect();
         let polygon: Vec<u32> = (0..outline.len() as u32).collect();
         let done = triangulate(&positions, std::iter::once(&polygon[..])).unwrap();
         assert_eq!(done.notes.unresolved, []);
         let area = |[a, b, c]: [[f64; 2]; 3]| {
             (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         };
-        let areas: Vec<f64> = done
-            .faces
-            .iter()
-            .map(|face| area(face.map(|v| outline[v as usize])))
-            .collect();
+        let areas: Vec<f64> =
+            done.faces.iter().map(|face| area(face.map(|v| outline[v as usize]))).collect();
         assert!(areas.iter().all(|&area| area > 0.0));
         let next = outline.iter().cycle().skip(1);
-        let shoelace: f64 = outline
-            .iter()
-            .zip(next)
-            .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
-            .sum();
+        let shoelace: f64 = outline.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
         assert!((areas.iter().sum::<f64>() / shoelace - 1.0).abs() < 1e-12);
-        let report = check(&TriangleSoup {
-            positions,
-            faces: done.faces.clone(),
-        });
+        let report = check(&TriangleSoup { positions, faces: done.faces.clone() });
         assert_eq!(report.faults, []);
-        assert_eq!(
-            (
-                report.facts.euler_characteristic(),
-                report.facts.boundary_loops()
-            ),
-            (1, 1)
-        );
+        assert_eq!((report.facts.euler_characteristic(), report.facts.boundary_loops()), (1, 1));
         done
     }
 
@@ -253,10 +228,8 @@ mod tests {
             [radius * angle.cos(), radius * angle.sin()]
         };
         let done = split(&(0..10).map(corner).collect::<Vec<_>>());
-        let tips = done
-            .faces
-            .iter()
-            .filter(|face| face.iter().filter(|&v| v % 2 == 0).count() == 1);
+        let tips =
+            done.faces.iter().filter(|face| face.iter().filter(|&v| v % 2 == 0).count() == 1);
         assert_eq!(tips.count(), 5);
     }
 
@@ -274,9 +247,7 @@ mod tests {
             let polygons = [comb, &[taken[0], taken[1], 7]];
             let done = triangulate(&positions, polygons.into_iter()).unwrap();
             let has = |edge: [u32; 2]| {
-                done.faces[..5]
-                    .iter()
-                    .any(|face| edge.iter().all(|v| face.contains(v)))
+                done.faces[..5].iter().any(|face| edge.iter().all(|v| face.contains(v)))
             };
             assert!(has(free) && !has(taken));
             assert_eq!(done.notes.unresolved, []);

@@ -65,10 +65,7 @@ impl Facts {
     /// χ = #V − #E + #F over all components, boundary loops unfilled.
     #[must_use]
     pub fn euler_characteristic(&self) -> i64 {
-        self.components
-            .iter()
-            .map(ComponentFacts::euler_characteristic)
-            .sum()
+        self.components.iter().map(ComponentFacts::euler_characteristic).sum()
     }
 
     /// Boundary loops of all components.
@@ -81,11 +78,7 @@ impl Facts {
     #[must_use]
     pub fn genus(&self) -> Option<usize> {
         let total = self.components.iter().map(|c| c.genus).sum();
-        if self.components.is_empty() {
-            None
-        } else {
-            total
-        }
+        if self.components.is_empty() { None } else { total }
     }
 
     /// Whether there are faces and none has a free side.
@@ -97,11 +90,7 @@ impl Facts {
     /// The counts of elements alone.
     pub(super) fn counting(soup: &TriangleSoup) -> Self {
         let (n_vertices, n_faces) = (soup.positions.len(), soup.faces.len());
-        Self {
-            n_vertices,
-            n_faces,
-            ..Self::default()
-        }
+        Self { n_vertices, n_faces, ..Self::default() }
     }
 
     pub(super) fn measure(topology: &Topology) -> Self {
@@ -193,10 +182,7 @@ fn components(topology: &Topology) -> Vec<ComponentFacts> {
     for &(face, _) in &topology.patches.not_orientable {
         tallies.entry(component(face)).or_default().is_irregular = true;
     }
-    tallies
-        .into_iter()
-        .map(|(first_face, tally)| tally.finish(first_face))
-        .collect()
+    tallies.into_iter().map(|(first_face, tally)| tally.finish(first_face)).collect()
 }
 
 /// For each corner that is the lowest of a fan on the boundary, the lowest such corner of its
@@ -214,23 +200,12 @@ fn boundary_loops(topology: &Topology) -> Vec<Option<u32>> {
         }
     }
     let named = |(root, on_boundary): (u32, bool)| on_boundary.then_some(root);
-    loops
-        .into_roots()
-        .into_iter()
-        .zip(on_boundary)
-        .map(named)
-        .collect()
+    loops.into_roots().into_iter().zip(on_boundary).map(named).collect()
 }
 
 impl Tally {
     fn finish(self, first_face: u32) -> ComponentFacts {
-        let Self {
-            n_vertices,
-            n_edges,
-            n_faces,
-            boundary_loops,
-            is_irregular,
-        } = self;
+        let Self { n_vertices, n_edges, n_faces, boundary_loops, is_irregular } = self;
         let mut component = ComponentFacts {
             first_face,
             n_vertices,
@@ -255,19 +230,11 @@ mod tests {
     use std::f64::consts::FRAC_PI_4;
 
     fn facts(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Facts {
-        check(&TriangleSoup {
-            positions: positions.to_vec(),
-            faces: faces.to_vec(),
-        })
-        .facts
+        check(&TriangleSoup { positions: positions.to_vec(), faces: faces.to_vec() }).facts
     }
 
-    const SQUARE: [[f64; 3]; 4] = [
-        [0.0, 0.0, 0.0],
-        [3.0, 0.0, 0.0],
-        [3.0, 3.0, 1.0],
-        [0.0, 3.0, 0.0],
-    ];
+    const SQUARE: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 3.0, 1.0], [0.0, 3.0, 0.0]];
 
     #[test]
     fn a_tetrahedron_is_a_sphere() {
@@ -293,22 +260,11 @@ mod tests {
     #[test]
     fn an_annulus_has_two_loops() {
         // A triangular tube: inner ring 0 1 2, outer ring 3 4 5.
-        let positions: Vec<[f64; 3]> = (0..6)
-            .map(|i| [i as f64, (i * i) as f64, (i * i * i) as f64])
-            .collect();
-        let faces = [
-            [0, 1, 4],
-            [0, 4, 3],
-            [1, 2, 5],
-            [1, 5, 4],
-            [2, 0, 3],
-            [2, 3, 5],
-        ];
+        let positions: Vec<[f64; 3]> =
+            (0..6).map(|i| [i as f64, (i * i) as f64, (i * i * i) as f64]).collect();
+        let faces = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
         let found = facts(&positions, &faces);
-        assert_eq!(
-            (found.euler_characteristic(), found.boundary_loops()),
-            (0, 2)
-        );
+        assert_eq!((found.euler_characteristic(), found.boundary_loops()), (0, 2));
         assert_eq!(found.genus(), Some(0));
     }
 

@@ -211,25 +211,15 @@ mod tests {
     fn messages_name_their_elements() {
         let cases = [
             (
-                Fault::IndexOutOfRange {
-                    face: 12,
-                    index: 9,
-                    n_vertices: 8,
-                },
+                Fault::IndexOutOfRange { face: 12, index: 9, n_vertices: 8 },
                 "face 12 refers to vertex 9, the mesh has 8 vertices",
             ),
             (
-                Fault::NonManifoldEdge {
-                    vertices: [3, 7],
-                    faces: vec![0, 4, 5],
-                },
+                Fault::NonManifoldEdge { vertices: [3, 7], faces: vec![0, 4, 5] },
                 "edge 3-7 has 3 faces: 0, 4, 5",
             ),
             (
-                Fault::InconsistentOrientation {
-                    edge: [0, 2],
-                    faces: [1, 8],
-                },
+                Fault::InconsistentOrientation { edge: [0, 2], faces: [1, 8] },
                 "faces 1 and 8 at edge 0-2 have opposite orientations",
             ),
             (
@@ -237,18 +227,12 @@ mod tests {
                 "vertex 3 joins 2 fans of faces that share no edge",
             ),
             (
-                Fault::NonOrientable {
-                    face: 0,
-                    edge: [1, 4],
-                },
+                Fault::NonOrientable { face: 0, edge: [1, 4] },
                 "the component of face 0 cannot be oriented: \
                  its faces cannot agree across edge 1-4",
             ),
             (
-                Fault::TooManyFaces {
-                    n_faces: 800_000_000,
-                    limit: 715_827_882,
-                },
+                Fault::TooManyFaces { n_faces: 800_000_000, limit: 715_827_882 },
                 "the mesh has 800000000 faces, more than the 715827882 that can be numbered",
             ),
         ];
@@ -259,18 +243,9 @@ mod tests {
 
     #[test]
     fn only_geometry_and_spare_vertices_are_warnings() {
-        assert_eq!(
-            Fault::ZeroAreaFace { face: 0 }.severity(),
-            Severity::Warning
-        );
-        assert_eq!(
-            Fault::ZeroLengthEdge { vertices: [0, 1] }.severity(),
-            Severity::Warning
-        );
-        assert_eq!(
-            Fault::UnreferencedVertex { vertex: 0 }.severity(),
-            Severity::Warning
-        );
+        assert_eq!(Fault::ZeroAreaFace { face: 0 }.severity(), Severity::Warning);
+        assert_eq!(Fault::ZeroLengthEdge { vertices: [0, 1] }.severity(), Severity::Warning);
+        assert_eq!(Fault::UnreferencedVertex { vertex: 0 }.severity(), Severity::Warning);
         assert_eq!(Fault::NoFaces.severity(), Severity::Error);
         assert!(Severity::Error > Severity::Warning);
     }
@@ -278,10 +253,7 @@ mod tests {
     #[test]
     fn faces_are_renamed_and_vertices_are_not() {
         let halved = |fault: Fault| fault.with_faces_renamed(|face| face / 2).to_string();
-        let edge = Fault::NonManifoldEdge {
-            vertices: [3, 7],
-            faces: vec![0, 4, 5],
-        };
+        let edge = Fault::NonManifoldEdge { vertices: [3, 7], faces: vec![0, 4, 5] };
         assert_eq!(halved(edge), "edge 3-7 has 3 faces: 0, 2, 2");
         let copy = Fault::DuplicateFace { face: 9, first: 6 };
         assert_eq!(halved(copy), "face 4 is a copy of face 3");

@@ -13,11 +13,7 @@ pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 pub(super) fn norm(a: [f64; 3]) -> f64 {
@@ -58,10 +54,7 @@ impl Local {
     pub(super) fn new(points: impl Iterator<Item = [f64; 3]>) -> Self {
         let mut points: Vec<_> = points.collect();
         let Some(&first) = points.first() else {
-            return Self {
-                points,
-                rounding: 0.0,
-            };
+            return Self { points, rounding: 0.0 };
         };
         let (unit, rounding) = local_unit(&points, first);
         for p in &mut points {
@@ -113,19 +106,11 @@ fn local_unit(points: &[[f64; 3]], first: [f64; 3]) -> (f64, f64) {
         extent = extent.max(largest(half_difference(p, first)));
         size = size.max(largest(p));
     }
-    if extent > 0.0 {
-        (extent, f64::EPSILON * (0.5 * size / extent))
-    } else {
-        (1.0, 0.0)
-    }
+    if extent > 0.0 { (extent, f64::EPSILON * (0.5 * size / extent)) } else { (1.0, 0.0) }
 }
 
 fn half_difference(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
-    [
-        0.5 * p[0] - 0.5 * q[0],
-        0.5 * p[1] - 0.5 * q[1],
-        0.5 * p[2] - 0.5 * q[2],
-    ]
+    [0.5 * p[0] - 0.5 * q[0], 0.5 * p[1] - 0.5 * q[1], 0.5 * p[2] - 0.5 * q[2]]
 }
 
 fn to_local(p: [f64; 3], first: [f64; 3], unit: f64) -> [f64; 3] {
@@ -159,11 +144,7 @@ pub(super) fn shape(corners: [[f64; 3]; 3]) -> Shape {
 pub(super) fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     let half = half_difference(p, q);
     let unit = largest(half);
-    if unit > 0.0 {
-        2.0 * (unit * norm(half.map(|x| x / unit)))
-    } else {
-        0.0
-    }
+    if unit > 0.0 { 2.0 * (unit * norm(half.map(|x| x / unit))) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -191,24 +172,12 @@ mod tests {
         assert!(shape([[5.0; 3]; 3]).is_flat);
         assert!(!shape([[0.0; 3], [1.0, 0.0, 0.0], [0.5, 1e-12, 0.0]]).is_flat);
         // The same height is lost far from the origin.
-        assert!(
-            shape([
-                [1e6, 0.0, 0.0],
-                [1e6 + 1.0, 0.0, 0.0],
-                [1e6 + 0.5, 1e-12, 0.0]
-            ])
-            .is_flat
-        );
+        assert!(shape([[1e6, 0.0, 0.0], [1e6 + 1.0, 0.0, 0.0], [1e6 + 0.5, 1e-12, 0.0]]).is_flat);
     }
 
     #[test]
     fn area_has_the_sign_of_the_normal() {
-        let square = [
-            [0.0, 0.0, 0.0],
-            [2.0, 0.0, 0.0],
-            [2.0, 2.0, 0.0],
-            [0.0, 2.0, 0.0],
-        ];
+        let square = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
         let local = Local::new(square.into_iter());
         assert_eq!(local.points[2], [1.0, 1.0, 0.0]);
         let up = unit_normal(&local.points).unwrap();

@@ -58,10 +58,7 @@ impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DroppedRepeatedVertexFace { face, vertex } => {
-                write!(
-                    f,
-                    "dropped face {face}, which used vertex {vertex} more than once"
-                )
+                write!(f, "dropped face {face}, which used vertex {vertex} more than once")
             }
             Self::DroppedDuplicateFace { face, first } => {
                 write!(f, "dropped face {face}, a copy of face {first}")
@@ -74,10 +71,7 @@ impl fmt::Display for Repair {
             }
             Self::SplitVertex { vertex, copies } => {
                 let n = copies.len() + 1;
-                write!(
-                    f,
-                    "split vertex {vertex} into {n}, one for each fan of faces"
-                )
+                write!(f, "split vertex {vertex} into {n}, one for each fan of faces")
             }
             Self::DroppedUnreferencedVertices { vertices } => {
                 let vertices = counted(vertices, "vertex", "vertices");
@@ -150,9 +144,7 @@ fn surplus(connectivity: &Connectivity, n_faces: usize, mut reverses: Vec<Twin>)
     }
     let mut helps = vec![true; n_faces];
     for sides in connectivity.edges() {
-        let staying = sides
-            .iter()
-            .filter(|side| !is_surplus[side.face() as usize]);
+        let staying = sides.iter().filter(|side| !is_surplus[side.face() as usize]);
         if staying.count() > 2 {
             for side in sides {
                 helps[side.face() as usize] = false;
@@ -172,25 +164,21 @@ impl Repaired {
         for (&triple, face) in faces.iter().zip(0u32..) {
             if let Some(vertex) = repeated(triple) {
                 live[face as usize] = false;
-                self.repairs
-                    .push(Repair::DroppedRepeatedVertexFace { face, vertex });
+                self.repairs.push(Repair::DroppedRepeatedVertexFace { face, vertex });
             }
         }
-        let (reverses, copies): (Vec<_>, Vec<_>) = twins(faces, &live)
-            .into_iter()
-            .partition(|twin| twin.reversed);
+        let (reverses, copies): (Vec<_>, Vec<_>) =
+            twins(faces, &live).into_iter().partition(|twin| twin.reversed);
         for twin in copies {
             live[twin.face as usize] = false;
             let (face, first) = (twin.face, twin.first);
-            self.repairs
-                .push(Repair::DroppedDuplicateFace { face, first });
+            self.repairs.push(Repair::DroppedDuplicateFace { face, first });
         }
         let connectivity = Connectivity::new(faces, &live);
         for twin in surplus(&connectivity, faces.len(), reverses) {
             live[twin.face as usize] = false;
             let (face, first) = (twin.face, twin.first);
-            self.repairs
-                .push(Repair::DroppedOppositeFace { face, first });
+            self.repairs.push(Repair::DroppedOppositeFace { face, first });
         }
         let mut keep = live.iter();
         self.soup.faces.retain(|_| keep.next() == Some(&true));
@@ -216,17 +204,10 @@ impl Repaired {
         for (face, &(patch, odd)) in patches.of_face.iter().enumerate() {
             if excess[patch as usize].is_some_and(|excess| odd == (excess >= 0)) {
                 self.soup.faces[face].swap(1, 2);
-                turned
-                    .entry(patch)
-                    .or_default()
-                    .push(self.face_origin[face]);
+                turned.entry(patch).or_default().push(self.face_origin[face]);
             }
         }
-        self.repairs.extend(
-            turned
-                .into_values()
-                .map(|faces| Repair::Reoriented { faces }),
-        );
+        self.repairs.extend(turned.into_values().map(|faces| Repair::Reoriented { faces }));
     }
 
     /// Drops vertices in no face. Runs while vertices still are what they were.
@@ -252,8 +233,7 @@ impl Repaired {
         for vertex in self.soup.faces.iter_mut().flatten() {
             *vertex = renamed[*vertex as usize];
         }
-        self.repairs
-            .push(Repair::DroppedUnreferencedVertices { vertices: dropped });
+        self.repairs.push(Repair::DroppedUnreferencedVertices { vertices: dropped });
     }
 
     /// Gives every fan but the first of each vertex a copy of it.
@@ -281,11 +261,7 @@ impl Repaired {
             self.soup.faces[(corner / 3) as usize][(corner % 3) as usize] =
                 copy_of_fan[fan as usize];
         }
-        for (v, copies) in copies
-            .into_iter()
-            .enumerate()
-            .filter(|(_, copies)| !copies.is_empty())
-        {
+        for (v, copies) in copies.into_iter().enumerate().filter(|(_, copies)| !copies.is_empty()) {
             let vertex = self.vertex_origin[v];
             self.repairs.push(Repair::SplitVertex { vertex, copies });
         }

@@ -12,10 +12,7 @@ pub(super) struct SignedSets {
 
 impl SignedSets {
     pub(super) fn new(n: usize) -> Self {
-        Self {
-            parent: (0..n as u32).collect(),
-            odd: vec![false; n],
-        }
+        Self { parent: (0..n as u32).collect(), odd: vec![false; n] }
     }
 
     /// The smallest member of `x`'s set, and whether `x` has the opposite sign.
@@ -39,9 +36,7 @@ impl SignedSets {
 
     /// For each member the smallest member of its set.
     pub(super) fn into_roots(mut self) -> Vec<u32> {
-        (0..self.parent.len() as u32)
-            .map(|x| self.find(x).0)
-            .collect()
+        (0..self.parent.len() as u32).map(|x| self.find(x).0).collect()
     }
 
     /// Joins the sets of `a` and `b`, whose signs differ if `odd`. False if they are in one set
@@ -74,10 +69,7 @@ mod tests {
         assert_eq!(sets.find(3), (1, false));
         assert_eq!(sets.find(0), (0, false));
         assert!(sets.join(4, 1, true), "three odd steps are odd");
-        assert!(
-            !sets.join(4, 1, false),
-            "the same pair cannot agree as well"
-        );
+        assert!(!sets.join(4, 1, false), "the same pair cannot agree as well");
     }
 
     #[test]

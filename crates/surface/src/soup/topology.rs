@@ -23,14 +23,7 @@ impl<'a> Topology<'a> {
         let fans = connectivity.fans();
         let patches = connectivity.patches();
         let fans_at_vertex = vec![0; soup.positions.len()];
-        let mut topology = Self {
-            soup,
-            live,
-            connectivity,
-            fans,
-            fans_at_vertex,
-            patches,
-        };
+        let mut topology = Self { soup, live, connectivity, fans, fans_at_vertex, patches };
         for (face, triple) in topology.live_faces() {
             for (corner, vertex) in (3 * face..).zip(triple) {
                 if topology.fans[corner as usize] == corner {

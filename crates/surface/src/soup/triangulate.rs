@@ -98,36 +98,20 @@ impl TriangulationNotes {
 }
 
 fn polygon_faults(n_vertices: usize, polygons: &[&[u32]]) -> Vec<Fault> {
-    let n_faces = polygons
-        .iter()
-        .map(|polygon| polygon.len().saturating_sub(2))
-        .sum();
+    let n_faces = polygons.iter().map(|polygon| polygon.len().saturating_sub(2)).sum();
     if n_faces > MAX_FACES || polygons.len() > MAX_FACES {
-        return vec![Fault::TooManyFaces {
-            n_faces,
-            limit: MAX_FACES,
-        }];
+        return vec![Fault::TooManyFaces { n_faces, limit: MAX_FACES }];
     }
     if n_vertices > MAX_VERTICES {
-        return vec![Fault::TooManyVertices {
-            n_vertices,
-            limit: MAX_VERTICES,
-        }];
+        return vec![Fault::TooManyVertices { n_vertices, limit: MAX_VERTICES }];
     }
     let mut faults = Vec::new();
     for (&polygon, face) in polygons.iter().zip(0u32..) {
         if polygon.len() < 3 {
-            faults.push(Fault::TooFewCorners {
-                face,
-                corners: polygon.len(),
-            });
+            faults.push(Fault::TooFewCorners { face, corners: polygon.len() });
         }
         for &index in polygon.iter().filter(|&&v| v as usize >= n_vertices) {
-            faults.push(Fault::IndexOutOfRange {
-                face,
-                index,
-                n_vertices,
-            });
+            faults.push(Fault::IndexOutOfRange { face, index, n_vertices });
         }
         if polygon.len() > 3
             && let Some(vertex) = first_repeated(polygon)
@@ -142,10 +126,7 @@ fn polygon_faults(n_vertices: usize, polygons: &[&[u32]]) -> Vec<Fault> {
 fn first_repeated(polygon: &[u32]) -> Option<u32> {
     let mut sorted = polygon.to_vec();
     sorted.sort_unstable();
-    sorted
-        .windows(2)
-        .find(|pair| pair[0] == pair[1])
-        .map(|pair| pair[0])
+    sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
 /// The edges of a mesh in the making, as pairs of vertices.
@@ -198,27 +179,15 @@ fn split(positions: &[[f64; 3]], polygon: &[u32], edges: &Edges) -> Split {
         let distinct = if n == 4 { 2 } else { n };
         if let Some(corner) = (0..distinct).find(is_valid) {
             let triangles = fan(n, corner).collect();
-            return Split {
-                triangles,
-                is_first_fan: corner == 0,
-                is_valid: true,
-            };
+            return Split { triangles, is_first_fan: corner == 0, is_valid: true };
         }
         if let Some(triangles) = clip_ears(&local, normal, polygon, edges) {
-            return Split {
-                triangles,
-                is_first_fan: false,
-                is_valid: true,
-            };
+            return Split { triangles, is_first_fan: false, is_valid: true };
         }
     }
     let corner = (0..n).find(|&corner| is_new(corner)).unwrap_or(0);
     let triangles = fan(n, corner).collect();
-    Split {
-        triangles,
-        is_first_fan: corner == 0,
-        is_valid: false,
-    }
+    Split { triangles, is_first_fan: corner == 0, is_valid: false }
 }
 
 /// The triangles of a polygon of `n` corners around one of them.
@@ -235,22 +204,15 @@ mod tests {
         triangulate(positions, polygons.iter().copied()).unwrap()
     }
 
-    const SQUARE: [[f64; 3]; 4] = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ];
+    const SQUARE: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
     #[test]
     fn a_convex_quad_is_the_fan_from_its_first_corner() {
         let done = split(&SQUARE, &[&[0, 1, 2, 3]]);
         assert_eq!(done.faces, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(done.polygon_of_face, [0, 0]);
-        assert_eq!(
-            (done.notes.quads, done.notes.larger, done.notes.other_choice),
-            (1, 0, 0)
-        );
+        assert_eq!((done.notes.quads, done.notes.larger, done.notes.other_choice), (1, 0, 0));
         let rotated = split(&SQUARE, &[&[1, 2, 3, 0]]);
         assert_eq!(rotated.faces, [[1, 2, 3], [1, 3, 0]]);
     }
@@ -266,12 +228,7 @@ mod tests {
     #[test]
     fn an_arrowhead_is_split_at_its_notch() {
         // Corner 3 is reflex: only the diagonal 1-3 stays inside.
-        let arrow = [
-            [0.0, 0.0, 0.0],
-            [4.0, 1.0, 0.0],
-            [0.0, 2.0, 0.0],
-            [1.0, 1.0, 0.0],
-        ];
+        let arrow = [[0.0, 0.0, 0.0], [4.0, 1.0, 0.0], [0.0, 2.0, 0.0], [1.0, 1.0, 0.0]];
         let done = split(&arrow, &[&[0, 1, 2, 3]]);
         assert_eq!(done.faces, [[1, 2, 3], [1, 3, 0]]);
         assert_eq!(done.notes.other_choice, 1);
@@ -284,13 +241,8 @@ mod tests {
 
     #[test]
     fn a_corner_on_a_straight_side_makes_no_flat_triangle() {
-        let with_midpoint = [
-            [0.0, 0.0, 0.0],
-            [0.5, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [0.0, 1.0, 0.0],
-        ];
+        let with_midpoint =
+            [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let done = split(&with_midpoint, &[&[0, 1, 2, 3, 4]]);
         assert_eq!(done.faces, [[1, 2, 3], [1, 3, 4], [1, 4, 0]]);
         assert_eq!((done.notes.larger, done.notes.other_choice), (1, 1));
@@ -310,10 +262,7 @@ mod tests {
     fn both_sides_of_a_square_get_different_diagonals() {
         let done = split(&SQUARE, &[&[0, 1, 2, 3], &[3, 2, 1, 0]]);
         assert_eq!(done.faces, [[0, 1, 2], [0, 2, 3], [3, 2, 1], [3, 1, 0]]);
-        let soup = TriangleSoup {
-            positions: SQUARE.to_vec(),
-            faces: done.faces,
-        };
+        let soup = TriangleSoup { positions: SQUARE.to_vec(), faces: done.faces };
         let report = check(&soup);
         assert_eq!(report.faults, []);
         assert_eq!(report.facts.genus(), Some(0));
@@ -322,22 +271,12 @@ mod tests {
     #[test]
     fn a_comb_needs_its_ears_clipped() {
         // Two teeth: no corner sees all others.
-        let flat = [
-            [0.0, 0.0],
-            [6.0, 0.0],
-            [6.0, 4.0],
-            [4.0, 1.0],
-            [3.0, 4.0],
-            [2.0, 1.0],
-            [0.0, 4.0],
-        ];
+        let flat =
+            [[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [4.0, 1.0], [3.0, 4.0], [2.0, 1.0], [0.0, 4.0]];
         let positions = flat.map(|[x, y]| [x, y, 0.0]);
         let done = split(&positions, &[&[0, 1, 2, 3, 4, 5, 6]]);
         assert_eq!(done.faces.len(), 5);
-        assert_eq!(
-            (done.notes.other_choice, done.notes.unresolved.len()),
-            (1, 0)
-        );
+        assert_eq!((done.notes.other_choice, done.notes.unresolved.len()), (1, 0));
         // Shoelace: 24 minus the notches (2,5 to 4: base 3, depth 3 each).
         let area = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|v| flat[v as usize]);
@@ -345,10 +284,7 @@ mod tests {
         };
         assert!(done.faces.iter().all(|face| area(face) > 0.0));
         assert!((done.faces.iter().map(area).sum::<f64>() - 15.0).abs() < 1e-12);
-        let report = check(&TriangleSoup {
-            positions: positions.to_vec(),
-            faces: done.faces,
-        });
+        let report = check(&TriangleSoup { positions: positions.to_vec(), faces: done.faces });
         assert_eq!(report.faults, []);
     }
 
@@ -361,10 +297,7 @@ mod tests {
         // With 0-2 taken the other diagonal is chosen.
         let done = split(&line, &[&[0, 2, 3], &[0, 1, 2, 3]]);
         assert_eq!(done.faces, [[0, 2, 3], [1, 2, 3], [1, 3, 0]]);
-        assert_eq!(
-            (done.notes.other_choice, done.notes.unresolved),
-            (1, vec![1])
-        );
+        assert_eq!((done.notes.other_choice, done.notes.unresolved), (1, vec![1]));
     }
 
     #[test]
@@ -372,20 +305,10 @@ mod tests {
         let polygons: [&[u32]; 5] = [&[0, 1], &[0, 1, 2, 9], &[0, 1, 2, 1], &[0, 0, 1], &[]];
         let found = triangulate(&SQUARE, polygons.into_iter()).unwrap_err();
         let expected = [
-            Fault::TooFewCorners {
-                face: 0,
-                corners: 2,
-            },
-            Fault::IndexOutOfRange {
-                face: 1,
-                index: 9,
-                n_vertices: 4,
-            },
+            Fault::TooFewCorners { face: 0, corners: 2 },
+            Fault::IndexOutOfRange { face: 1, index: 9, n_vertices: 4 },
             Fault::RepeatedVertex { face: 2, vertex: 1 },
-            Fault::TooFewCorners {
-                face: 4,
-                corners: 0,
-            },
+            Fault::TooFewCorners { face: 4, corners: 0 },
         ];
         assert_eq!(found, expected);
     }

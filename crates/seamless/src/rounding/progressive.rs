@@ -1,6 +1,7 @@
 //! The rounding loop of the direct method.
 
 use super::matched::MatchedCut;
+use super::patch::LocalEstimate;
 use super::relaxation::Relaxation;
 use crate::layout::homotopy::HomotopyError;
 use crate::layout::isometric::unfold;
@@ -8,9 +9,22 @@ use crate::progress::Watch;
 use num_complex::Complex64;
 use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
 
+/// How the size of a rounding is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RoundingStrategy {
+    /// By the angle it turns the seam.
+    #[default]
+    ConeBias,
+    /// By the change of energy it makes on a small patch around the seam, the seed's local estimation.
+    LocalEstimation,
+}
+
 /// Settings of the rounding loop.
 #[derive(Debug, Clone, Copy)]
 pub struct RoundingOptions {
+    /// How the size of a rounding is judged.
+    pub strategy: RoundingStrategy,
     /// How much a rounding that makes cones costs, against one that only turns: 0 gives the lowest
     /// distortion and two to five times the cones, 0.5 half the cones for about 0.02 of energy.
     pub cone_bias: f64,
@@ -23,6 +37,7 @@ pub struct RoundingOptions {
 impl Default for RoundingOptions {
     fn default() -> Self {
         Self {
+            strategy: RoundingStrategy::default(),
             cone_bias: 0.5,
             rounds: 60,
             layout_iterations: 8,
@@ -51,7 +66,7 @@ const LARGE_TURN: f64 = 0.1;
 /// changed enough.
 ///
 /// The cost of turning a seam of rotation r by d = i - r to the integer i, with k the real indices of
-/// its ends, is `|d| + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves curvature from one
+/// its ends, is `size(d) + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves curvature from one
 /// end to the other, and the second term is the change of total absolute curvature. Returns the
 /// rotations of the faces in the last layout of the all-seam cut.
 pub fn round(
@@ -68,6 +83,7 @@ pub fn round(
     let total = open.len().max(1) as f64;
     let mut stats = RoundingStats::default();
     let mut since_layout = 0;
+    let mut estimate: Option<(LocalEstimate, VertexData<f64>)> = None;
     while !open.is_empty() {
         watch.tick(1.0 - open.len() as f64 / total)?;
         let growth = stats.rounds as f64 / (options.rounds.max(2) - 1) as f64;
@@ -77,15 +93,12 @@ pub fn round(
             f64::INFINITY
         };
         let index = interior_indices(mesh, metric, matched, &rotation);
-        let chosen = choose(
-            mesh,
-            matched,
-            &rotation,
-            &index,
-            &open,
-            threshold,
-            options.cone_bias,
-        );
+        let size = |seam: u32, turn: f64| match &estimate {
+            Some((patches, log_scale)) => patches.size(seam, turn, log_scale),
+            None => turn.abs(),
+        };
+        let bias = options.cone_bias;
+        let chosen = choose(mesh, matched, &rotation, &index, &open, threshold, bias, size);
         stats.rounds += 1;
         if chosen.is_empty() {
             continue;
@@ -96,9 +109,7 @@ pub fn round(
             relaxation.close(seam as usize, integer);
         }
         let mut is_chosen = vec![false; rotation.len()];
-        chosen
-            .iter()
-            .for_each(|&(seam, _)| is_chosen[seam as usize] = true);
+        chosen.iter().for_each(|&(seam, _)| is_chosen[seam as usize] = true);
         open.retain(|&seam| !is_chosen[seam as usize]);
         since_layout += chosen.len();
         if (since_layout as f64) < LAYOUT_SHARE * total && !open.is_empty() {
@@ -107,6 +118,14 @@ pub fn round(
         since_layout = 0;
         relaxation.relax(options.layout_iterations)?;
         stats.layouts += 1;
+        if options.strategy == RoundingStrategy::LocalEstimation {
+            // Most seams are rounded at first sight; the patches of the others are worth solving.
+            let patches = match estimate {
+                Some((patches, _)) => patches,
+                None => LocalEstimate::new(mesh, metric, &matched.cut.seams, &open),
+            };
+            estimate = Some((patches, relaxation.log_scale(mesh, metric)));
+        }
         for &seam in &open {
             let r = &mut rotation[seam as usize];
             *r = relaxation.rotation(seam as usize, *r);
@@ -139,13 +158,10 @@ fn choose(
     open: &[u32],
     threshold: f64,
     bias: f64,
+    size: impl Fn(u32, f64) -> f64,
 ) -> Vec<(u32, i32)> {
     let change = |v: Vertex, d: f64| {
-        if mesh.is_boundary(v) {
-            0.0
-        } else {
-            (index[v] + d).abs() - index[v].abs()
-        }
+        if mesh.is_boundary(v) { 0.0 } else { (index[v] + d).abs() - index[v].abs() }
     };
     let mut candidates: Vec<(f64, u32, i32)> = open
         .iter()
@@ -155,14 +171,11 @@ fn choose(
             let r = rotation[seam as usize];
             let cost = |integer: f64| {
                 let turn = integer - r;
-                turn.abs() + bias * (change(o, -turn) + change(d, turn))
+                size(seam, turn) + bias * (change(o, -turn) + change(d, turn))
             };
             let (low, high) = (cost(r.floor()), cost(r.ceil()));
-            let (cost, integer) = if high < low - 1e-12 {
-                (high, r.ceil())
-            } else {
-                (low, r.floor())
-            };
+            let (cost, integer) =
+                if high < low - 1e-12 { (high, r.ceil()) } else { (low, r.floor()) };
             (cost <= threshold).then_some((cost, seam, integer as i32))
         })
         .collect();
@@ -179,8 +192,5 @@ fn choose(
         used[d] |= free;
         free
     });
-    candidates
-        .into_iter()
-        .map(|(_, seam, integer)| (seam, integer))
-        .collect()
+    candidates.into_iter().map(|(_, seam, integer)| (seam, integer)).collect()
 }

@@ -1,0 +1,115 @@
+//! The direct method on one connected mesh.
+
+use super::fewer_cones::fewer_cones;
+use super::finish::Finished;
+use super::{ComponentStats, MapOptions, StageStats};
+use crate::cut::DualTree;
+use crate::layout::safeguards::{LayoutError, lay_out, way_back};
+use crate::progress::{Stage, Watch};
+use crate::rounding::{MatchedCut, repair, round};
+use seamstress_surface::{Component, Halfedge, Metric, TriMesh, Vertex};
+use std::time::Instant;
+
+/// Exponents of the metrics to solve in: the mesh's own, then snowflakes for meshes whose triangles are
+/// too thin for arithmetic.
+const EXPONENTS: [f64; 3] = [1.0, 0.5, 0.3];
+
+/// UVs per corner of one component, in mesh units, and how they were made.
+pub(super) fn map_component(
+    piece: &Component,
+    positions: &[[f64; 3]],
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
+    let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+    let metric = Metric::from_positions(&piece.mesh, &positions);
+    let mut first_failure = None;
+    for exponent in EXPONENTS {
+        match solve(&piece.mesh, &metric, exponent, options, watch) {
+            Ok(solved) => return Ok(solved),
+            Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(failure) => first_failure = first_failure.or(Some(failure)),
+        }
+    }
+    Err(first_failure.unwrap_or(LayoutError::Defective(Default::default())))
+}
+
+/// Cut, round, lay out, clean up: the direct method in the metric with lengths to the given exponent,
+/// and back to the plain metric.
+fn solve(
+    mesh: &TriMesh,
+    plain: &Metric,
+    exponent: f64,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
+    let mut clock = Clock::new();
+
+    watch.enter(Stage::Cut)?;
+    let metric = if exponent < 1.0 { plain.snowflake(mesh, exponent) } else { plain.clone() };
+    let mut matched = MatchedCut::new(mesh, &metric, curvature_tree(mesh, &metric));
+    clock.lap(Stage::Cut, 0);
+
+    watch.enter(Stage::Rounding)?;
+    let (frames, rounding) = round(mesh, &metric, &mut matched, &options.rounding, watch)?;
+    let (repaired_seams, _) = repair(mesh, &metric, &mut matched);
+    clock.lap(Stage::Rounding, rounding.layouts);
+
+    watch.enter(Stage::Layout)?;
+    let laid = lay_out(mesh, &metric, &matched, Some(&frames), watch)?;
+    let mut finished = Finished::new(laid, watch)?;
+    clock.lap(Stage::Layout, finished.iterations);
+
+    if options.cone_price > 0.0 {
+        watch.enter(Stage::CleanUp)?;
+        let (better, iterations) =
+            fewer_cones(mesh, &metric, &matched, finished, options.cone_price, watch)?;
+        finished = better;
+        clock.lap(Stage::CleanUp, iterations);
+    }
+
+    let mut laid = finished.laid;
+    if exponent < 1.0 {
+        laid.y = way_back(mesh, plain, &mut laid.layout, laid.y, exponent, watch)?;
+    }
+    laid.layout.rescale(&mut laid.y);
+    let z = laid.layout.expand(&laid.y);
+    let uv = |h: Halfedge| z[laid.layout.cut.wedge[h] as usize] * plain.unit;
+    let uvs = mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect();
+    let stats = ComponentStats {
+        faces: mesh.n_faces(),
+        genus: mesh.genus(),
+        boundary_loops: mesh.n_boundary_loops(),
+        route: laid.route,
+        metric_exponent: exponent,
+        rounding_rounds: rounding.rounds,
+        repaired_seams,
+        stages: clock.laps,
+    };
+    Ok((uvs, stats))
+}
+
+/// The dual tree that crosses flat edges first, so that seams run through curved vertices.
+fn curvature_tree(mesh: &TriMesh, metric: &Metric) -> DualTree {
+    let curvature = metric.curvature(mesh);
+    let bend = |v: Vertex| if mesh.is_boundary(v) { 0.0 } else { curvature[v].abs() };
+    DualTree::lightest(mesh, |h: Halfedge| bend(mesh.origin(h)).min(bend(mesh.tip(h))))
+}
+
+/// Seconds and iterations by stage.
+struct Clock {
+    start: Instant,
+    laps: Vec<StageStats>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self { start: Instant::now(), laps: Vec::new() }
+    }
+
+    fn lap(&mut self, stage: Stage, iterations: usize) {
+        let seconds = self.start.elapsed().as_secs_f64();
+        self.laps.push(StageStats { stage, seconds, iterations });
+        self.start = Instant::now();
+    }
+}

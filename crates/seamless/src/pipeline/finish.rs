@@ -1,0 +1,43 @@
+//! From a flip-free layout to one of low distortion.
+
+use crate::layout::energy::{Energy, PowerOfDirichlet, SymmetricDirichlet};
+use crate::layout::newton::NewtonOptions;
+use crate::layout::safeguards::Laid;
+use crate::progress::{Cancelled, Watch};
+
+/// Exponents of the energy, in turn: the higher, the more the worst triangles count.
+const POWERS: [i32; 5] = [2, 4, 8, 16, 32];
+const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 40, tolerance: 1e-6 };
+const POLISH: NewtonOptions = NewtonOptions { max_iterations: 10, tolerance: 1e-3 };
+
+/// A layout of least symmetric Dirichlet energy with its worst triangles polished.
+pub(super) struct Finished {
+    pub(super) laid: Laid,
+    pub(super) symmetric_dirichlet: f64,
+    pub(super) tau: f64,
+    /// Newton iterations in all, those of the layout included.
+    pub(super) iterations: usize,
+}
+
+impl Finished {
+    /// Minimises the symmetric Dirichlet energy, then growing powers of it.
+    pub(super) fn new(mut laid: Laid, watch: &mut Watch<'_, '_>) -> Result<Self, Cancelled> {
+        let solution = laid.layout.minimize(laid.y, &SymmetricDirichlet, &SETTLE, watch)?;
+        let mut iterations = laid.homotopy_steps + solution.iterations;
+        let mut y = solution.y;
+        for p in POWERS {
+            let z = laid.layout.expand(&y);
+            let worst = laid.layout.problem().triangles().iter().map(|t| {
+                let (s1, s2) = t.jacobian(&z).singular_values();
+                SymmetricDirichlet.value(s1, s2)
+            });
+            let energy = PowerOfDirichlet { p, bound: worst.fold(4.0, f64::max) };
+            let solution = laid.layout.minimize(y, &energy, &POLISH, watch)?;
+            iterations += solution.iterations;
+            y = solution.y;
+        }
+        laid.y = y;
+        let (symmetric_dirichlet, tau) = laid.layout.distortion(&laid.y);
+        Ok(Self { laid, symmetric_dirichlet, tau, iterations })
+    }
+}

@@ -1,0 +1,159 @@
+//! The direct method from mesh to certified map.
+
+mod component;
+mod fewer_cones;
+mod finish;
+
+use crate::layout::safeguards::{LayoutError, Route};
+use crate::map::{SeamlessMap, Tolerance, Violations};
+use crate::progress::{Cancelled, Observer, Stage, Watch};
+use crate::quality::{Distortion, distortion};
+use crate::rounding::RoundingOptions;
+use component::map_component;
+use seamstress_surface::{Component, Face, Metric, TriMesh, components};
+
+/// Settings of the direct method.
+#[derive(Debug, Clone, Copy)]
+pub struct MapOptions {
+    /// The rounding loop.
+    pub rounding: RoundingOptions,
+    /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
+    /// cones as rounded.
+    pub cone_price: f64,
+    /// Tolerance of the certificate.
+    pub tolerance: Tolerance,
+}
+
+impl Default for MapOptions {
+    fn default() -> Self {
+        Self {
+            rounding: RoundingOptions::default(),
+            cone_price: 0.0006,
+            tolerance: Tolerance::default(),
+        }
+    }
+}
+
+/// A certified map and how it was made.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct MapSolution {
+    /// The map; UVs in mesh units.
+    pub map: SeamlessMap,
+    /// Its distortion.
+    pub distortion: Distortion,
+    /// One entry per connected component, in order of first faces.
+    pub components: Vec<ComponentStats>,
+}
+
+/// How the map of one component was made.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct ComponentStats {
+    /// Faces.
+    pub faces: usize,
+    /// Genus.
+    pub genus: i64,
+    /// Boundary loops.
+    pub boundary_loops: usize,
+    /// Route of the final layout.
+    pub route: Route,
+    /// Exponent of the metric the map was first made in: 1 unless the mesh is degenerate.
+    pub metric_exponent: f64,
+    /// Rounds of the rounding loop.
+    pub rounding_rounds: usize,
+    /// Seams shifted to make indices possible.
+    pub repaired_seams: usize,
+    /// Seconds and iterations by stage.
+    pub stages: Vec<StageStats>,
+}
+
+/// Cost of one stage.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct StageStats {
+    /// The stage.
+    pub stage: Stage,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Layouts or Newton iterations.
+    pub iterations: usize,
+}
+
+/// Why there is no map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A component could not be laid out.
+    #[error("component {component} (with face {face}): {cause}")]
+    Component {
+        /// The component, in order of first faces.
+        component: usize,
+        /// Its first face.
+        face: u32,
+        /// What failed.
+        #[source]
+        cause: LayoutError,
+    },
+    /// The result did not pass the certificate. Nothing is returned then.
+    #[error("the map failed its certificate: {0}")]
+    Uncertified(#[from] Violations),
+}
+
+/// Makes a seamless map of every component of a mesh.
+///
+/// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
+/// Dirichlet energy, components side by side. The observer is called at least once per iteration of
+/// every loop and may break to cancel.
+///
+/// # Errors
+/// [`MapError`]; never an uncertified map.
+///
+/// # Source
+/// Levi 2021, supplement; the steps are those of `docs/theory`.
+pub fn make_map(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    options: &MapOptions,
+    observer: &mut Observer<'_>,
+) -> Result<MapSolution, MapError> {
+    let pieces = components::components(mesh).unwrap_or_default();
+    let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
+    let mut stats = Vec::with_capacity(pieces.len());
+    let mut left_edge = 0.0;
+    for (k, piece) in pieces.iter().enumerate() {
+        let mut watch = Watch::new(observer, k, pieces.len());
+        let fail = |cause| match cause {
+            LayoutError::Cancelled(cancelled) => MapError::Cancelled(cancelled),
+            cause => MapError::Component { component: k, face: piece.faces[0].0, cause },
+        };
+        let (uvs, piece_stats) =
+            map_component(piece, positions, options, &mut watch).map_err(fail)?;
+        left_edge = place(piece, &uvs, left_edge, &mut corner_uvs);
+        stats.push(piece_stats);
+    }
+    Watch::new(observer, pieces.len().saturating_sub(1), pieces.len()).enter(Stage::Certificate)?;
+    let metric = Metric::from_positions(mesh, positions);
+    let distortion = distortion(mesh, &metric, &corner_uvs);
+    let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
+    Ok(MapSolution { map, distortion, components: stats })
+}
+
+/// Moves a component's UVs to the right of what stands there; returns the new right edge.
+fn place(piece: &Component, uvs: &[[f64; 2]], left_edge: f64, all: &mut [[f64; 2]]) -> f64 {
+    let range = |k: usize| {
+        let low = uvs.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        let high = uvs.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        (low, high)
+    };
+    let ((u0, u1), (v0, _)) = (range(0), range(1));
+    for (i, &Face(f)) in piece.faces.iter().enumerate() {
+        for k in 0..3 {
+            let [u, v] = uvs[3 * i + k];
+            all[3 * f as usize + k] = [u - u0 + left_edge, v - v0];
+        }
+    }
+    left_edge + (u1 - u0) * 1.02
+}
