@@ -1,7 +1,7 @@
 //! The command line.
 
 use clap::{Parser, Subcommand, value_parser};
-use seamstress::rounding::RoundingOptions;
+use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use seamstress::{MapOptions, Tolerance};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -108,6 +108,21 @@ pub(crate) struct MapArgs {
     )]
     pub(crate) cone_bias: f64,
 
+    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
+    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = MapOptions::default().cone_price
+    )]
+    pub(crate) cone_price: f64,
+
+    /// How the rounding of a seam is judged: by its angle and the cones it makes, or by its effect
+    /// estimated on a small patch as well
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
+    pub(crate) rounding: Rounding,
+
     /// Give up when the map is not done after this many seconds [default: no limit]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time_limit: Option<Duration>,
@@ -125,11 +140,25 @@ pub(crate) struct MapArgs {
     pub(crate) quiet: bool,
 }
 
+/// Names of the rounding strategies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Rounding {
+    /// Angle and cones
+    ConeBias,
+    /// Effect on a small patch, and cones
+    LocalEstimation,
+}
+
 impl MapArgs {
     /// The settings of the method.
     pub(crate) fn options(&self) -> MapOptions {
         let mut options = MapOptions::default();
         options.rounding.cone_bias = self.cone_bias;
+        options.rounding.strategy = match self.rounding {
+            Rounding::ConeBias => RoundingStrategy::ConeBias,
+            Rounding::LocalEstimation => RoundingStrategy::LocalEstimation,
+        };
+        options.cone_price = self.cone_price;
         options
     }
 }

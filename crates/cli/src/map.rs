@@ -182,6 +182,8 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
         options: json!({
             "repair": args.repair,
             "cone_bias": args.cone_bias,
+            "cone_price": args.cone_price,
+            "rounding": args.options().rounding.strategy,
             "time_limit": args.time_limit.map(|limit| limit.as_secs_f64()),
             "threads": args.threads,
         }),

@@ -7,10 +7,9 @@ use std::f64::consts::PI;
 
 /// Lengths, flat triangles, angles and areas of a mesh, in units of its mean edge length.
 ///
-/// The unit makes every later constant scale-free (the seed's section 11 asks for a scale that
-/// balances the singular values of the embedding; its printed factor is itself scale-invariant, and
-/// the mean edge length did as well as the corrected one on every mesh tried). [`Metric::unit`]
-/// leads back to mesh units.
+/// The unit makes every later constant scale-free. (The seed's section 11 asks for a scale that balances
+/// the singular values of the embedding; the factor it prints does not depend on the scale at all, and
+/// what matters is that there is a unit.) [`Metric::unit`] leads back to mesh units.
 #[derive(Debug, Clone)]
 pub struct Metric {
     /// Length per half-edge, equal on twins.
