@@ -20,11 +20,14 @@ pub(super) struct Finished {
 }
 
 impl Finished {
-    /// Minimises the symmetric Dirichlet energy, then growing powers of it.
+    /// Minimises the symmetric Dirichlet energy, then growing powers of it; keeps the best
+    /// compromise on the way.
     pub(super) fn new(mut laid: Laid, watch: &mut Watch<'_, '_>) -> Result<Self, Cancelled> {
         let solution = laid.layout.minimize(laid.y, &SymmetricDirichlet, &SETTLE, watch)?;
         let mut iterations = laid.homotopy_steps + solution.iterations;
         let mut y = solution.y;
+        let (mut symmetric_dirichlet, mut tau) = laid.layout.distortion(&y);
+        laid.y = y.clone();
         for p in POWERS {
             let z = laid.layout.expand(&y);
             let worst = laid.layout.problem().triangles().iter().map(|t| {
@@ -35,9 +38,18 @@ impl Finished {
             let solution = laid.layout.minimize(y, &energy, &POLISH, watch)?;
             iterations += solution.iterations;
             y = solution.y;
+            let (energy, worst) = laid.layout.distortion(&y);
+            if regret(energy, worst) < regret(symmetric_dirichlet, tau) {
+                (symmetric_dirichlet, tau) = (energy, worst);
+                laid.y = y.clone();
+            }
         }
-        laid.y = y;
-        let (symmetric_dirichlet, tau) = laid.layout.distortion(&laid.y);
         Ok(Self { laid, symmetric_dirichlet, tau, iterations })
     }
+}
+
+/// What the polish lowers on the whole: a fall of `tau - 1` by one part in a hundred may cost a rise of
+/// the mean excess energy by four.
+fn regret(symmetric_dirichlet: f64, tau: f64) -> f64 {
+    (tau - 1.0).max(1e-9).ln() + 0.25 * (symmetric_dirichlet - 4.0).max(1e-9).ln()
 }
