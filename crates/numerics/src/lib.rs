@@ -14,6 +14,6 @@ pub mod ordering;
 pub mod pattern;
 
 pub use assembly::Assembly;
-pub use cholesky::{Cholesky, NotPositiveDefinite, Scalar};
+pub use cholesky::{Cholesky, Kernel, NotPositiveDefinite, Scalar};
 pub use num_complex::Complex64;
 pub use pattern::{Pattern, PatternBuilder};

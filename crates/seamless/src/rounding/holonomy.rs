@@ -3,7 +3,7 @@
 use super::matched::MatchedCut;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
-use seamstress_numerics::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_numerics::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_surface::{Halfedge, Metric, TriMesh};
 use std::collections::VecDeque;
 
@@ -157,7 +157,7 @@ impl<'a> Projector<'a> {
                 matrix[slot as usize] -= weight;
             }
         }
-        let mut cholesky = Cholesky::analyze(&pattern, &order)?;
+        let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         cholesky.factorize(&pattern, &matrix)?;
         let mut seam_number = vec![0u32; mesh.n_halfedges()];
         edges.iter().enumerate().for_each(|(e, &h)| seam_number[h.at()] = e as u32);

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
-use seamstress_numerics::{Cholesky, NotPositiveDefinite, PatternBuilder};
+use seamstress_numerics::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
@@ -56,7 +56,7 @@ impl<'a> Surrogate<'a> {
         let pattern = builder.build();
         let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
         let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
-        let mut cholesky = Cholesky::analyze(&pattern, &order)?;
+        let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         let cotangent = metric.cotangent();
         let closed = !mesh.has_boundary();
         // Fixed vertices keep a row of their own with a large diagonal.
