@@ -11,12 +11,10 @@ pub enum Stage {
     Cut,
     /// Rounding the matchings.
     Rounding,
-    /// The exact seamless layout.
+    /// The exact seamless layout and its polish.
     Layout,
     /// Removing and moving cones.
     CleanUp,
-    /// Lowering the worst distortion.
-    Polish,
     /// Certifying.
     Certificate,
 }
@@ -29,7 +27,6 @@ impl Stage {
             Stage::Rounding => "rounding",
             Stage::Layout => "layout",
             Stage::CleanUp => "clean-up",
-            Stage::Polish => "polish",
             Stage::Certificate => "certificate",
         }
     }
@@ -53,7 +50,7 @@ pub struct Progress {
 #[error("stopped on request")]
 pub struct Cancelled;
 
-/// A caller's view of running work: called at least once per iteration of every loop.
+/// A caller's view of running work: called in every iteration of every long loop.
 pub type Observer<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// Reports progress of one component to an observer.

@@ -12,7 +12,7 @@ use crate::quarter::turn;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
-use seamstress_surface::{FaceData, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_surface::{Face, FaceData, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
 /// A cut through the cones, its matchings, and the layouts that close up to them.
@@ -29,18 +29,36 @@ pub struct ExactLayout {
 }
 
 /// What is wrong with a layout, if anything.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Defects {
     /// Triangles whose orientation is not positive.
-    pub flips: usize,
+    pub flips: Vec<Face>,
     /// Interior vertices whose angle sum is not `(4 - k) pi / 2`.
-    pub wrong_angles: usize,
+    pub wrong_angles: Vec<Vertex>,
 }
 
 impl Defects {
     /// Neither flips nor wrong angles.
-    pub fn none(self) -> bool {
-        self == Self::default()
+    pub fn none(&self) -> bool {
+        self.flips.is_empty() && self.wrong_angles.is_empty()
+    }
+}
+
+impl std::fmt::Display for Defects {
+    /// Counts and the first few elements.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |ids: Vec<u32>| {
+            let shown: Vec<String> = ids.iter().take(5).map(u32::to_string).collect();
+            let more = if ids.len() > 5 { ", ..." } else { "" };
+            match ids.len() {
+                0 => String::new(),
+                _ => format!(" ({}{more})", shown.join(", ")),
+            }
+        };
+        let (flips, wrong) = (self.flips.len(), self.wrong_angles.len());
+        write!(f, "{flips} flipped triangles{}", list(self.flips.iter().map(|f| f.0).collect()))?;
+        let vertices = list(self.wrong_angles.iter().map(|v| v.0).collect());
+        write!(f, " and {wrong} vertices with a wrong angle{vertices}")
     }
 }
 
@@ -187,20 +205,18 @@ impl ExactLayout {
         })
     }
 
-    /// Counts flips and wrong angles.
+    /// Lists flips and wrong angles.
     pub fn defects(&self, mesh: &TriMesh, y: &[f64]) -> Defects {
         let z = self.expand(y);
-        let flipped = |t: &&super::problem::Triangle| !is_positive(t.wedges.map(|w| z[w as usize]));
+        let flipped =
+            |f: &Face| !is_positive(self.problem.triangles()[f.at()].wedges.map(|w| z[w as usize]));
         let sums = angle_sums(mesh, self.problem.triangles(), &z);
         let wrong = mesh.vertices().filter(|&v| {
             let expected = f64::from(4 - self.index[v]) * FRAC_PI_2;
             // A wrong angle is off by a quarter turn at least.
             !mesh.is_boundary(v) && !((sums[v] - expected).abs() < 0.1)
         });
-        Defects {
-            flips: self.problem.triangles().iter().filter(flipped).count(),
-            wrong_angles: wrong.count(),
-        }
+        Defects { flips: mesh.faces().filter(flipped).collect(), wrong_angles: wrong.collect() }
     }
 }
 

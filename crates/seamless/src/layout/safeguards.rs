@@ -51,6 +51,8 @@ impl std::fmt::Display for Route {
 
 /// A flip-free exact layout with the right angles.
 pub struct Laid {
+    /// The matchings it closes up to, over the all-seam cut that gauges refer to.
+    pub matched: MatchedCut,
     /// The cut and its exact space.
     pub layout: ExactLayout,
     /// The unknowns.
@@ -68,7 +70,7 @@ pub enum LayoutError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// Every route left defects; those of the last one.
-    #[error("no route gave a layout without flips: {} flipped triangles and {} wrong cone angles are left", .0.flips, .0.wrong_angles)]
+    #[error("no route gave a layout without defects; the last one left {0}")]
     Defective(Defects),
     /// A linear system could not be solved.
     #[error(transparent)]
@@ -101,53 +103,52 @@ const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-
 pub fn lay_out(
     mesh: &TriMesh,
     metric: &Metric,
-    matched: &MatchedCut,
+    matched: MatchedCut,
     start: Option<&[Complex64]>,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Laid, LayoutError> {
-    let mut layout = ExactLayout::new(mesh, metric, matched)?;
+    let mut layout = ExactLayout::new(mesh, metric, &matched)?;
     if matched.cut.seams.is_empty() {
         let z = unfold(mesh, metric, &matched.tree, &matched.cut);
         let y = layout.adopt(&matched.cut, &z);
         if layout.defects(mesh, &y).none() {
-            return Ok(Laid { layout, y, route: Route::Isometric, homotopy_steps: 0 });
+            return Ok(Laid { matched, layout, y, route: Route::Isometric, homotopy_steps: 0 });
         }
     }
     if let Some(frames) = start {
         let y = layout.arap(frames, RIGID_ITERATIONS)?;
         let defects = layout.defects(mesh, &y);
         if defects.none() {
-            return Ok(Laid { layout, y, route: Route::Rigid, homotopy_steps: 0 });
+            return Ok(Laid { matched, layout, y, route: Route::Rigid, homotopy_steps: 0 });
         }
-        if (defects.flips as f64) < UNTANGLE_SHARE * mesh.n_faces() as f64 {
-            let (y, steps) = untangle(&mut layout, y, watch)?;
+        if (defects.flips.len() as f64) < UNTANGLE_SHARE * mesh.n_faces() as f64 {
+            let (y, homotopy_steps) = untangle(&mut layout, y, watch)?;
             if layout.defects(mesh, &y).none() {
-                return Ok(Laid { layout, y, route: Route::Untangled, homotopy_steps: steps });
+                return Ok(Laid { matched, layout, y, route: Route::Untangled, homotopy_steps });
             }
         }
     }
-    let mut homotopy_steps = 0;
-    if let Some((y, route)) =
-        homotopies(mesh, metric, matched, &mut layout, &mut homotopy_steps, watch)?
-    {
-        return Ok(Laid { layout, y, route, homotopy_steps });
-    }
-    let mut last = Defects::default();
+    let mut tried = Homotopies { steps: 0, last: Defects::default() };
+    let plain = tried.run(mesh, metric, matched, watch)?;
+    let matched = match plain {
+        Attempt::Laid(laid) => return Ok(laid),
+        Attempt::Failed(matched) => matched,
+    };
     for exponent in SNOWFLAKES {
         let snowflake = metric.snowflake(mesh, exponent);
         let over = matched.with_metric(mesh, &snowflake);
-        layout.set_metric(mesh, &snowflake);
-        let found = homotopies(mesh, &snowflake, &over, &mut layout, &mut homotopy_steps, watch)?;
-        if let Some((y, _)) = found {
-            let y = way_back(mesh, metric, &mut layout, y, exponent, watch)?;
-            last = layout.defects(mesh, &y);
-            if last.none() {
-                let route = Route::Snowflake { exponent };
-                return Ok(Laid { layout, y, route, homotopy_steps });
+        if let Attempt::Laid(mut laid) = tried.run(mesh, &snowflake, over, watch)? {
+            laid.y = way_back(mesh, metric, &mut laid.layout, laid.y, exponent, watch)?;
+            laid.matched = laid.matched.with_metric(mesh, metric);
+            laid.route = Route::Snowflake { exponent };
+            let defects = laid.layout.defects(mesh, &laid.y);
+            if defects.none() {
+                return Ok(laid);
             }
+            tried.last = defects;
         }
     }
-    Err(LayoutError::Defective(last))
+    Err(LayoutError::Defective(tried.last))
 }
 
 /// Pulls flipped triangles open by Newton steps on a regularised barrier that sharpens (Garanzha et al.
@@ -187,37 +188,66 @@ fn untangle(
     Ok((y, steps))
 }
 
-/// Barrier, continuation, continuation over a new tree.
-fn homotopies(
-    mesh: &TriMesh,
-    metric: &Metric,
-    matched: &MatchedCut,
-    layout: &mut ExactLayout,
-    steps: &mut usize,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Option<(Vec<f64>, Route)>, LayoutError> {
-    let mut accept = |closed: Closed, from: &MatchedCut, layout: &mut ExactLayout| {
-        *steps += closed.steps;
-        let y = layout.project(mesh, &from.cut, &closed.z)?;
-        Ok::<_, LayoutError>(layout.defects(mesh, &y).none().then_some(y))
-    };
-    let closed = homotopy::barrier(mesh, metric, matched, watch)?;
-    if let Some(y) = accept(closed, matched, layout)? {
-        return Ok(Some((y, Route::Barrier)));
+/// What the homotopies have cost and left so far.
+struct Homotopies {
+    steps: usize,
+    last: Defects,
+}
+
+enum Attempt {
+    Laid(Laid),
+    /// Gives the matchings back.
+    Failed(MatchedCut),
+}
+
+impl Homotopies {
+    /// Barrier, continuation, continuation over a new tree.
+    fn run(
+        &mut self,
+        mesh: &TriMesh,
+        metric: &Metric,
+        matched: MatchedCut,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Attempt, LayoutError> {
+        let settings = Continuation::default();
+        let closed = homotopy::barrier(mesh, metric, &matched, watch)?;
+        let matched = match self.accept(mesh, metric, matched, closed, Route::Barrier)? {
+            Attempt::Failed(matched) => matched,
+            laid => return Ok(laid),
+        };
+        let closed = homotopy::continuation(mesh, metric, &matched, &settings, watch)?;
+        let matched = match self.accept(mesh, metric, matched, closed, Route::Continuation)? {
+            Attempt::Failed(matched) => matched,
+            laid => return Ok(laid),
+        };
+        let other = retree(mesh, metric, &matched);
+        let closed = homotopy::continuation(mesh, metric, &other, &settings, watch)?;
+        Ok(match self.accept(mesh, metric, other, closed, Route::Retreed)? {
+            Attempt::Failed(_) => Attempt::Failed(matched),
+            laid => laid,
+        })
     }
-    let settings = Continuation::default();
-    let closed = homotopy::continuation(mesh, metric, matched, &settings, watch)?;
-    if let Some(y) = accept(closed, matched, layout)? {
-        return Ok(Some((y, Route::Continuation)));
+
+    /// Projects a nearly closed layout into the exact space and looks at what comes out.
+    fn accept(
+        &mut self,
+        mesh: &TriMesh,
+        metric: &Metric,
+        matched: MatchedCut,
+        closed: Closed,
+        route: Route,
+    ) -> Result<Attempt, LayoutError> {
+        self.steps += closed.steps;
+        let mut layout = ExactLayout::new(mesh, metric, &matched)?;
+        let y = layout.project(mesh, &matched.cut, &closed.z)?;
+        let defects = layout.defects(mesh, &y);
+        if defects.none() {
+            let homotopy_steps = self.steps;
+            return Ok(Attempt::Laid(Laid { matched, layout, y, route, homotopy_steps }));
+        }
+        self.last = defects;
+        Ok(Attempt::Failed(matched))
     }
-    let retreed = retree(mesh, metric, matched);
-    let closed = homotopy::continuation(mesh, metric, &retreed, &settings, watch)?;
-    let mut other = ExactLayout::new(mesh, metric, &retreed)?;
-    if let Some(y) = accept(closed, &retreed, &mut other)? {
-        *layout = other;
-        return Ok(Some((y, Route::Retreed)));
-    }
-    Ok(None)
 }
 
 /// Raises the exponent of a layout made in a snowflake metric to 1, by Newton steps that never flip.

@@ -131,7 +131,7 @@ fn add_scaled(target: &mut Expression, source: &Expression, factor: Complex64) {
 /// `matching[h]` is the integer r of half-edge `h` with `uv_right = i^r uv_left + t`, negated on
 /// twins, zero off the seams; `t` is one translation per chain. The conditions at the nodes are
 /// eliminated, with coefficients that are sums of quarter turns divided by `1 - i^k`, exact in floating
-/// point; one wedge is pinned at the origin against translations.
+/// point for all but the most entangled graphs; one wedge is pinned at the origin against translations.
 pub fn seamless_space(
     mesh: &TriMesh,
     cut: &Cut,
@@ -243,7 +243,7 @@ impl Builder<'_> {
         let mut sequence = Vec::new();
         for condition in self.conditions {
             let mut condition = substitute(condition, &solved);
-            // Coefficients that are units first: they keep everything exact.
+            // Large coefficients first: quarter turns, 2 and 1 + i keep everything exact.
             let size = |c: Complex64| (c.norm_sqr() * 16.0).round() as i64;
             let Some(pivot) = condition
                 .iter()

@@ -56,14 +56,13 @@ fn solve(
     clock.lap(Stage::Rounding, rounding.layouts);
 
     watch.enter(Stage::Layout)?;
-    let laid = lay_out(mesh, &metric, &matched, Some(&frames), watch)?;
+    let laid = lay_out(mesh, &metric, matched, Some(&frames), watch)?;
     let mut finished = Finished::new(laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
     if options.cone_price > 0.0 {
         watch.enter(Stage::CleanUp)?;
-        let (better, iterations) =
-            fewer_cones(mesh, &metric, &matched, finished, options.cone_price, watch)?;
+        let (better, iterations) = fewer_cones(mesh, &metric, finished, options.cone_price, watch)?;
         finished = better;
         clock.lap(Stage::CleanUp, iterations);
     }

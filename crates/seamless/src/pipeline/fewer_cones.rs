@@ -4,7 +4,7 @@ use super::finish::Finished;
 use crate::layout::safeguards::{LayoutError, lay_out};
 use crate::progress::Watch;
 use crate::quarter::turn;
-use crate::rounding::{CleanUpError, CleanUpOptions, MatchedCut, clean_up, fix_holonomy};
+use crate::rounding::{CleanUpError, CleanUpOptions, clean_up, fix_holonomy};
 use seamstress_surface::{Metric, TriMesh};
 
 /// Bounds on the log scale that clean-up tries, loosest first.
@@ -17,14 +17,13 @@ const EXCESS_GROWTH: f64 = 1.2;
 pub(super) fn fewer_cones(
     mesh: &TriMesh,
     metric: &Metric,
-    matched: &MatchedCut,
     before: Finished,
     price: f64,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Finished, usize), LayoutError> {
     let mut iterations = 0;
     for largest_scale in SCALE_BOUNDS {
-        let mut cleaned = matched.clone();
+        let mut cleaned = before.laid.matched.clone();
         let options = CleanUpOptions { price, largest_scale };
         let (stats, gauge) = match clean_up(mesh, metric, &mut cleaned, &options, watch) {
             Ok(done) => done,
@@ -38,7 +37,7 @@ pub(super) fn fewer_cones(
         let frames = before.laid.layout.frames(&before.laid.y);
         let frames: Vec<_> =
             frames.into_iter().zip(gauge.iter()).map(|(r, &k)| turn(r, k)).collect();
-        let after = match lay_out(mesh, metric, &cleaned, Some(&frames), watch) {
+        let after = match lay_out(mesh, metric, cleaned, Some(&frames), watch) {
             Ok(laid) => Finished::new(laid, watch)?,
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(_) => continue,

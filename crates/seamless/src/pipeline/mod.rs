@@ -4,6 +4,7 @@ mod component;
 mod fewer_cones;
 mod finish;
 
+use crate::layout::exact::Defects;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{SeamlessMap, Tolerance, Violations};
 use crate::progress::{Cancelled, Observer, Stage, Watch};
@@ -105,8 +106,8 @@ pub enum MapError {
 /// Makes a seamless map of every component of a mesh.
 ///
 /// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
-/// Dirichlet energy, components side by side. The observer is called at least once per iteration of
-/// every loop and may break to cancel.
+/// Dirichlet energy, components side by side. The observer is called in every iteration of
+/// every long loop and may break to cancel.
 ///
 /// # Errors
 /// [`MapError`]; never an uncertified map.
@@ -127,6 +128,11 @@ pub fn make_map(
         let mut watch = Watch::new(observer, k, pieces.len());
         let fail = |cause| match cause {
             LayoutError::Cancelled(cancelled) => MapError::Cancelled(cancelled),
+            LayoutError::Defective(defects) => MapError::Component {
+                component: k,
+                face: piece.faces[0].0,
+                cause: LayoutError::Defective(in_whole(piece, defects)),
+            },
             cause => MapError::Component { component: k, face: piece.faces[0].0, cause },
         };
         let (uvs, piece_stats) =
@@ -139,6 +145,14 @@ pub fn make_map(
     let distortion = distortion(mesh, &metric, &corner_uvs);
     let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
     Ok(MapSolution { map, distortion, components: stats })
+}
+
+/// Defects of a component in the ids of the whole mesh.
+fn in_whole(piece: &Component, defects: Defects) -> Defects {
+    Defects {
+        flips: defects.flips.iter().map(|f| piece.faces[f.at()]).collect(),
+        wrong_angles: defects.wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
+    }
 }
 
 /// Moves a component's UVs to the right of what stands there; returns the new right edge.

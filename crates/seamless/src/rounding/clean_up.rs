@@ -72,7 +72,7 @@ pub fn clean_up(
     let mut stats = CleanUpStats { cones_before: work.n_cones(), ..Default::default() };
     for sweep in 0..SWEEPS {
         watch.tick(sweep as f64 / SWEEPS as f64)?;
-        let (cancelled, moved) = (work.cancel(), work.move_cones());
+        let (cancelled, moved) = (work.cancel(watch)?, work.move_cones(watch)?);
         stats.cancelled += cancelled;
         stats.moved += moved;
         if cancelled + moved == 0 {
@@ -202,7 +202,7 @@ impl<'a> CleanUp<'a> {
     }
 
     /// One sweep of cancellations, best first.
-    fn cancel(&mut self) -> usize {
+    fn cancel(&mut self, watch: &mut Watch<'_, '_>) -> Result<usize, Cancelled> {
         let mut pairs = BTreeMap::new();
         for from in self.cones().into_iter().filter(|&v| self.index[v] > 0) {
             for (to, path) in self.near_negative(from) {
@@ -216,6 +216,7 @@ impl<'a> CleanUp<'a> {
         order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut count = 0;
         for (_, from, to) in order {
+            watch.pulse()?;
             let fits =
                 self.allows(from, self.index[from] - 1) && self.allows(to, self.index[to] + 1);
             let opposite = self.index[from] > 0 && self.index[to] < 0;
@@ -224,7 +225,7 @@ impl<'a> CleanUp<'a> {
                 count += 1;
             }
         }
-        count
+        Ok(count)
     }
 
     /// Negative cones near a positive one, with shortest paths to them.
@@ -269,7 +270,7 @@ impl<'a> CleanUp<'a> {
     }
 
     /// A few passes in which every cone may move to a neighbour once.
-    fn move_cones(&mut self) -> usize {
+    fn move_cones(&mut self, watch: &mut Watch<'_, '_>) -> Result<usize, Cancelled> {
         let mut total = 0;
         for _ in 0..MOVES {
             // Most steps stay the best ones until their turn comes: find their responses together.
@@ -277,6 +278,7 @@ impl<'a> CleanUp<'a> {
             self.prepare(&steps.iter().map(|&(a, b, _)| (a, b)).collect::<Vec<_>>());
             let mut count = 0;
             for v in self.cones() {
+                watch.pulse()?;
                 let Some(&(from, to, h)) = self.steps(v).first() else {
                     continue;
                 };
@@ -291,7 +293,7 @@ impl<'a> CleanUp<'a> {
                 break;
             }
         }
-        total
+        Ok(total)
     }
 
     /// The two most promising ways to move one unit of a cone to a neighbour, as (from, to, path).

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Rings around a seam that make its patch.
 const RINGS: usize = 2;
 
-/// Response of the log scale to turning one seam by a quarter, on its patch.
+/// Answer of the log scale to turning one seam by a quarter, on its patch, negated.
 struct Response {
     /// Vertices of the patch with the area-weighted change of the log scale.
     weighted: Vec<(Vertex, f64)>,
@@ -20,9 +20,9 @@ struct Response {
 /// Local estimates for the seams that are still open.
 ///
 /// Turning a seam by d quarters moves d quarters of curvature from its origin to its tip; on a patch
-/// held at its rim the conformal log scale u answers with `d w`, `L w = (pi / 2)(e_o - e_t)`. The
-/// energy `|u|^2` then changes by `2 d <u, w> + d^2 |w|^2`. In units of `|w|^2` this is `d^2` where the
-/// layout is still isometric, and less where the turn relieves a stretch that is there.
+/// held at its rim the logarithm s of the layout's scale answers with `-d w`, `L w = (pi / 2)(e_o - e_t)`.
+/// The energy `|s|^2` then changes by `-2 d <s, w> + d^2 |w|^2`. In units of `|w|^2` this is `d^2` where
+/// the layout is still isometric, and less where the turn relieves a stretch that is there.
 pub(super) struct LocalEstimate {
     responses: Vec<Option<Response>>,
 }
@@ -47,7 +47,7 @@ impl LocalEstimate {
     pub(super) fn size(&self, seam: u32, d: f64, log_scale: &VertexData<f64>) -> f64 {
         let Some(response) = &self.responses[seam as usize] else { return d.abs() };
         let overlap: f64 = response.weighted.iter().map(|&(v, w)| w * log_scale[v]).sum();
-        (d * d + 2.0 * d * overlap / response.square).max(0.0).sqrt()
+        (d * d - 2.0 * d * overlap / response.square).max(0.0).sqrt()
     }
 }
 

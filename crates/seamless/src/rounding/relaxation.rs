@@ -127,19 +127,19 @@ impl Relaxation {
     pub(super) fn relax(&mut self, iterations: usize) -> Result<(), NotPositiveDefinite> {
         self.cholesky.factorize(&self.pattern, &self.matrix)?;
         for _ in 0..iterations {
-            self.local_step();
+            self.local_step(OVERSHOOT);
             self.right_hand_side();
             self.cholesky.solve(&mut self.z);
         }
         Ok(())
     }
 
-    fn local_step(&mut self) {
+    fn local_step(&mut self, overshoot: f64) {
         let (z, wedges, weights) = (&self.z, &self.wedge_of_corner, &self.corner_weights);
         self.frames.par_iter_mut().enumerate().with_min_len(4096).for_each(|(f, frame)| {
             let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
             let best = direction(term(3 * f) + term(3 * f + 1) + term(3 * f + 2));
-            *frame = direction(best + OVERSHOOT * (best - *frame));
+            *frame = direction(best + overshoot * (best - *frame));
         });
     }
 
@@ -181,7 +181,7 @@ impl Relaxation {
 
     /// Rotations of the faces in the layout.
     pub(super) fn frames(mut self) -> Vec<Complex64> {
-        self.local_step();
+        self.local_step(0.0);
         self.frames
     }
 }

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Estimate of the excess distortion of the best map with given cones.
 ///
-/// `E(k) = 8 / A |u|^2_M` with `L u = K - k pi / 2`: u is the logarithmic scale of the conformal map with
+/// `E(k) = 8 / A |u|^2_M` with `L u = K - k pi / 2`: -u is the logarithmic scale of the conformal map with
 /// these cones, L the cotangent Laplacian, M the vertex areas. Scaling by `e^u` costs `8 u^2` of
 /// symmetric Dirichlet energy to second order; the best isometric map costs half as much, by the theory
 /// of thin plates, which changes the price of a cone but not the order of preference. u vanishes on the
@@ -19,7 +19,7 @@ pub struct Surrogate<'a> {
     total: f64,
     closed: bool,
     cholesky: Cholesky<f64>,
-    /// Log scale of the present cones.
+    /// Log scale of the present cones, negated.
     scale: Vec<f64>,
     /// `L^-1 M u`: half the gradient of the energy with respect to the curvature.
     gradient: Vec<f64>,
@@ -30,7 +30,7 @@ pub struct Surrogate<'a> {
 pub struct Response {
     /// Second-order change of the energy.
     pub quadratic: f64,
-    /// Change of the log scale at the first and the second vertex.
+    /// Change of the negated log scale at the first and the second vertex.
     pub scale: [f64; 2],
 }
 
@@ -183,7 +183,7 @@ impl<'a> Surrogate<'a> {
             .collect()
     }
 
-    /// Log scale at a vertex.
+    /// Log scale at a vertex, negated.
     pub fn scale(&self, v: Vertex) -> f64 {
         self.scale[v.at()]
     }

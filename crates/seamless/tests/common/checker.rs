@@ -30,6 +30,7 @@ pub(crate) fn check(faces: &[[u32; 3]], uvs: &[Uv]) -> Result<Found, Vec<String>
     if uvs.len() != 3 * faces.len() || uvs.iter().flatten().any(|x| !x.is_finite()) {
         return Err(vec!["UVs are missing or not finite".into()]);
     }
+    let uvs = &to_order_one(uvs);
     for (f, corners) in uvs.chunks_exact(3).enumerate() {
         if exact_orientation(corners) != 1 {
             faults.push(format!("face {f} has no positive area"));
@@ -70,6 +71,22 @@ pub(crate) fn check(faces: &[[u32; 3]], uvs: &[Uv]) -> Result<Found, Vec<String>
         return Err(faults);
     }
     Ok(Found { cones, euler_characteristic, is_closed: n_boundary == 0 })
+}
+
+/// Scaled by a power of two, which changes no digit, to keep products in range.
+fn to_order_one(uvs: &[Uv]) -> Vec<Uv> {
+    let largest = uvs.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    let (mut size, mut steps) = (largest, 0);
+    while size > 0.0 && size < 1.0 {
+        (size, steps) = (size * 2.0, steps + 1);
+    }
+    while size >= 2.0 {
+        (size, steps) = (size / 2.0, steps - 1);
+    }
+    // In two factors: one may be out of range.
+    let half = 2f64.powi(steps / 2);
+    let rest = 2f64.powi(steps - steps / 2);
+    uvs.iter().map(|p| p.map(|x| x * half * rest)).collect()
 }
 
 /// Corners at the start and the end of every directed edge.

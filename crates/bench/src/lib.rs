@@ -1,0 +1,5 @@
+//! What the measuring programs of Seamstress share.
+
+pub mod markdown;
+pub mod meshes;
+pub mod process;

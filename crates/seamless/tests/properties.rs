@@ -1,0 +1,167 @@
+//! Random surfaces of genus 0 to 3 with 0 to 3 boundary loops, held to what must not depend on how
+//! a surface is stored, placed or computed.
+
+mod common;
+
+use common::{mapped, mesh_of};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use seamstress::map::Cone;
+use seamstress::{MapOptions, MapSolution, make_map};
+use seamstress_surface::soup::TriangleSoup;
+use seamstress_testkit as kit;
+use std::ops::ControlFlow;
+
+/// Runs a property on surfaces from the same seeds every time.
+fn for_surfaces(cases: u32, property: impl Fn(u64, TriangleSoup)) {
+    let config =
+        Config { cases, failure_persistence: None, max_shrink_iters: 0, ..Config::default() };
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let outcome = TestRunner::new_with_rng(config, rng).run(&any::<u64>(), |seed| {
+        property(seed, kit::random_surface(seed));
+        Ok(())
+    });
+    if let Err(failure) = outcome {
+        panic!("{failure}");
+    }
+}
+
+#[test]
+fn every_surface_has_a_seamless_map() {
+    for_surfaces(25, |seed, soup| {
+        let solution = mapped(&soup);
+        let stats = &solution.components[0];
+        let characteristic = mesh_of(&soup).euler_characteristic();
+        assert_eq!(2 - 2 * stats.genus - stats.boundary_loops as i64, characteristic);
+        let d = &solution.distortion;
+        assert!(d.tau < 8.0 && d.symmetric_dirichlet < 6.0, "seed {seed}: {d:?}");
+        assert!(d.tau_t.p50 <= d.tau_t.p95 && d.tau_t.p95 <= d.tau_t.p99);
+        assert!(d.tau_t.p99 <= d.tau * (1.0 + 1e-12));
+        assert_eq!((d.measured, d.flipped, d.degenerate), (soup.faces.len(), 0, 0));
+    });
+}
+
+#[test]
+fn other_numbers_for_vertices_and_faces_give_as_good_a_map() {
+    for_surfaces(8, |seed, soup| {
+        let other = mapped(&kit::relabel(&soup, seed));
+        assert_alike(&mapped(&soup), &other, &format!("seed {seed} relabelled"));
+    });
+}
+
+/// Whether two maps differ by rounding errors alone.
+fn same(one: &MapSolution, other: &MapSolution) -> bool {
+    let (a, b) = (&one.distortion, &other.distortion);
+    one.map.cones() == other.map.cones()
+        && (a.tau - b.tau).abs() < 1e-6
+        && (a.symmetric_dirichlet - b.symmetric_dirichlet).abs() < 1e-6
+}
+
+#[track_caller]
+fn assert_same(one: &MapSolution, other: &MapSolution) {
+    let figures = |s: &MapSolution| (s.distortion, s.map.cones().to_vec());
+    assert!(same(one, other), "{:#?}", [figures(one), figures(other)]);
+}
+
+/// Asserts that two maps are about as good.
+#[track_caller]
+fn assert_alike(one: &MapSolution, other: &MapSolution, what: &str) {
+    let (a, b) = (&one.distortion, &other.distortion);
+    assert!(a.tau < 1.5 * b.tau && b.tau < 1.5 * a.tau, "{what}: tau {} and {}", a.tau, b.tau);
+    let [x, y] = [a, b].map(|d| d.symmetric_dirichlet - 4.0);
+    assert!(x < 2.0 * y + 0.01 && y < 2.0 * x + 0.01, "{what}: energies 4 + {x} and 4 + {y}");
+}
+
+/// Maps a surface before and after a change that rounding errors alone can see.
+///
+/// Where roundings tie, rounding errors decide, and the map becomes another one as good; on most
+/// surfaces it stays the same.
+fn compare_after(change: impl Fn(&TriangleSoup) -> TriangleSoup, what: &str) {
+    let n_same = std::cell::Cell::new(0);
+    for_surfaces(10, |seed, soup| {
+        let (one, other) = (mapped(&soup), mapped(&change(&soup)));
+        assert_alike(&one, &other, &format!("seed {seed} {what}"));
+        n_same.set(n_same.get() + usize::from(same(&one, &other)));
+    });
+    assert!(n_same.get() >= 4, "{what}: only {} of 10 maps stay the same", n_same.get());
+}
+
+/// Surfaces that leave nothing to choose.
+fn developable() -> [TriangleSoup; 4] {
+    [kit::subdivide(&kit::cube()), kit::l_bracket(), kit::cylinder(12, 3), kit::fan(60, 1.0, true)]
+}
+
+#[test]
+fn size_does_not_matter() {
+    for factor in [1e-12, 3.7, 1e30] {
+        compare_after(|soup| kit::scale(soup, factor), &format!("times {factor:e}"));
+        for soup in developable() {
+            assert_same(&mapped(&soup), &mapped(&kit::scale(&soup, factor)));
+        }
+    }
+}
+
+/// Turned about two axes and moved.
+fn displaced(soup: &TriangleSoup) -> TriangleSoup {
+    let ((sin, cos), (sin2, cos2)) = (1.1f64.sin_cos(), 2.3f64.sin_cos());
+    let motion = |&[x, y, z]: &[f64; 3]| {
+        let [x, y] = [cos * x - sin * y, sin * x + cos * y];
+        let [y, z] = [cos2 * y - sin2 * z, sin2 * y + cos2 * z];
+        [x + 0.7, y - 0.4, z + 0.2]
+    };
+    TriangleSoup {
+        positions: soup.positions.iter().map(motion).collect(),
+        faces: soup.faces.clone(),
+    }
+}
+
+#[test]
+fn place_and_direction_do_not_matter() {
+    compare_after(displaced, "moved");
+    for soup in developable() {
+        assert_same(&mapped(&soup), &mapped(&displaced(&soup)));
+    }
+}
+
+#[test]
+fn powers_of_two_change_no_digit() {
+    for_surfaces(5, |_, soup| {
+        let one = mapped(&soup);
+        for exponent in [-600, -40, 1, 40, 600] {
+            let factor = 2f64.powi(exponent);
+            let other = mapped(&kit::scale(&soup, factor));
+            let expected: Vec<_> =
+                one.map.corner_uvs().iter().map(|p| p.map(|x| x * factor)).collect();
+            assert!(other.map.corner_uvs() == expected, "times 2^{exponent}");
+            assert_eq!(other.distortion.tau, one.distortion.tau);
+            assert_eq!(other.map.cones(), one.map.cones());
+        }
+    });
+}
+
+fn mapped_on(threads: usize, soup: &TriangleSoup) -> (Vec<[u64; 2]>, Vec<Cone>) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let solution = pool.install(|| {
+        let mut go_on = |_| ControlFlow::Continue(());
+        make_map(&mesh_of(soup), &soup.positions, &MapOptions::default(), &mut go_on).unwrap()
+    });
+    let bits = solution.map.corner_uvs().iter().map(|p| p.map(f64::to_bits)).collect();
+    (bits, solution.map.cones().to_vec())
+}
+
+#[test]
+fn the_same_bits_every_time_on_any_number_of_threads() {
+    for_surfaces(5, |seed, soup| {
+        let one = mapped_on(1, &soup);
+        for threads in [1, 2, 3] {
+            assert!(mapped_on(threads, &soup) == one, "seed {seed} on {threads} threads");
+        }
+    });
+}
+
+#[test]
+fn large_meshes_too_have_the_same_bits_on_any_number_of_threads() {
+    // More faces than one parallel task takes.
+    let soup = kit::bumpy(&kit::torus(90, 50, 2.0, 0.8), 0.1, 1);
+    assert!(mapped_on(1, &soup) == mapped_on(2, &soup));
+}
