@@ -46,10 +46,10 @@ impl Pattern {
             let begin = self.column_offsets[column] as usize;
             let end = self.column_offsets[column + 1] as usize;
             y[column] += values[begin] * x[column];
-            for k in begin + 1..end {
-                let row = self.rows[k] as usize;
-                y[row] += values[k] * x[column];
-                y[column] += values[k] * x[row];
+            let below = self.rows[begin + 1..end].iter().zip(&values[begin + 1..end]);
+            for (&row, value) in below {
+                y[row as usize] += value * x[column];
+                y[column] += value * x[row as usize];
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Quarter turns of the plane: the powers of i.
+//! Quarter turns of the plane, the powers of i, and other small arithmetic.
 
 use num_complex::Complex64;
 
@@ -22,6 +22,12 @@ pub fn unit(k: i32) -> Complex64 {
 /// The rotation by `quarters` quarter turns, any real number.
 pub fn rotation(quarters: f64) -> Complex64 {
     Complex64::from_polar(1.0, quarters * std::f64::consts::FRAC_PI_2)
+}
+
+/// Whether a figure is at most a limit; a figure that is not a number is not.
+#[inline]
+pub fn within(figure: f64, limit: f64) -> bool {
+    figure <= limit
 }
 
 /// Unit complex number in the direction of `z`, 1 for zero.

@@ -61,10 +61,19 @@ fn the_largest_numbers_have_a_map() {
     mapped(&kit::scale(&kit::icosphere(2), 8e307));
 }
 
-/// Poles of valence 3000.
+/// A cube without height: the map fails its certificate (face 3 is flipped).
 #[test]
-fn poles_of_any_valence() {
-    mapped(&kit::uv_sphere(3000, 3));
+fn a_flat_cube_has_a_map() {
+    mapped(&kit::stretch(&kit::cube(), [1.0, 1.0, 0.0]));
+}
+
+/// Every third vertex of a grid at the origin: the map fails its certificate (vertex 21 has 4.98
+/// quarter turns).
+#[test]
+fn a_grid_with_coincident_vertices_has_a_map() {
+    let mut soup = kit::disk_grid(5, 5);
+    soup.positions.iter_mut().step_by(3).for_each(|p| *p = [0.0; 3]);
+    mapped(&soup);
 }
 
 /// More money per cone must not leave more cones: seed 4 has 38 at 0.0006 and 43 at 0.002.

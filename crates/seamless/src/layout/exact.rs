@@ -8,7 +8,7 @@ use super::problem::{LayoutProblem, triangles};
 use super::space::{regauge, seamless_space, turned_vertices};
 use crate::cut::{Cut, SeamGraph, connect_cones};
 use crate::progress::{Cancelled, Watch};
-use crate::quarter::turn;
+use crate::quarter::{turn, within};
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
@@ -214,7 +214,7 @@ impl ExactLayout {
         let wrong = mesh.vertices().filter(|&v| {
             let expected = f64::from(4 - self.index[v]) * FRAC_PI_2;
             // A wrong angle is off by a quarter turn at least.
-            !mesh.is_boundary(v) && !((sums[v] - expected).abs() < 0.1)
+            !mesh.is_boundary(v) && !within((sums[v] - expected).abs(), 0.1)
         });
         Defects { flips: mesh.faces().filter(flipped).collect(), wrong_angles: wrong.collect() }
     }

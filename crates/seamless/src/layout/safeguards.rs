@@ -131,7 +131,7 @@ pub fn lay_out(
     let mut tried = Homotopies { steps: 0, last: Defects::default() };
     let plain = tried.run(mesh, metric, matched, watch)?;
     let matched = match plain {
-        Attempt::Laid(laid) => return Ok(laid),
+        Attempt::Laid(laid) => return Ok(*laid),
         Attempt::Failed(matched) => matched,
     };
     for exponent in SNOWFLAKES {
@@ -143,7 +143,7 @@ pub fn lay_out(
             laid.route = Route::Snowflake { exponent };
             let defects = laid.layout.defects(mesh, &laid.y);
             if defects.none() {
-                return Ok(laid);
+                return Ok(*laid);
             }
             tried.last = defects;
         }
@@ -195,7 +195,7 @@ struct Homotopies {
 }
 
 enum Attempt {
-    Laid(Laid),
+    Laid(Box<Laid>),
     /// Gives the matchings back.
     Failed(MatchedCut),
 }
@@ -243,7 +243,8 @@ impl Homotopies {
         let defects = layout.defects(mesh, &y);
         if defects.none() {
             let homotopy_steps = self.steps;
-            return Ok(Attempt::Laid(Laid { matched, layout, y, route, homotopy_steps }));
+            let laid = Laid { matched, layout, y, route, homotopy_steps };
+            return Ok(Attempt::Laid(Box::new(laid)));
         }
         self.last = defects;
         Ok(Attempt::Failed(matched))

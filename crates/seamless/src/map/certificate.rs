@@ -1,7 +1,7 @@
 //! The certificate of a seamless map.
 
 use super::violation::{Violation, Violations};
-use crate::quarter::turn;
+use crate::quarter::{turn, within};
 use num_complex::Complex64;
 use seamstress_surface::{Halfedge, TriMesh, Vertex, VertexData};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -198,7 +198,7 @@ impl<'a> Check<'a> {
             let mismatch = (right - turn(left, quarters)).norm();
             let ends = [self.mesh.origin(h).0, self.mesh.tip(h).0];
             largest = largest.max(mismatch / mean);
-            if !(mismatch <= allowed) {
+            if !within(mismatch, allowed) {
                 self.violations.push(Violation::OpenSeam {
                     vertices: ends,
                     faces: [h.face().0, t.face().0],
@@ -249,7 +249,7 @@ impl<'a> Check<'a> {
         for (component, (&sum, chi)) in sums.iter().zip(characteristic).enumerate() {
             let expected = 4 * chi;
             // The boundary's share is a sum of angles; all the rest are integers.
-            if !((sum - expected as f64).abs() < 0.5) {
+            if !within((sum - expected as f64).abs(), 0.5) {
                 self.violations.push(Violation::PoincareHopf { component, sum, expected });
             }
         }
@@ -268,7 +268,7 @@ impl<'a> Check<'a> {
         let nearest = quarters.round();
         let off = (angle - nearest * FRAC_PI_2).abs();
         *error = error.max(off);
-        if !(off <= tolerance) || nearest < 1.0 {
+        if !within(off, tolerance) || nearest < 1.0 {
             self.violations.push(Violation::ConeAngle { vertex: v.0, quarters });
         }
         let index = 4 - nearest as i32;

@@ -3,6 +3,7 @@
 use super::matched::MatchedCut;
 use super::patch::LocalEstimate;
 use super::relaxation::Relaxation;
+use crate::cut::Cut;
 use crate::layout::homotopy::HomotopyError;
 use crate::layout::isometric::unfold;
 use crate::progress::Watch;
@@ -93,12 +94,18 @@ pub fn round(
             f64::INFINITY
         };
         let index = interior_indices(mesh, metric, matched, &rotation);
-        let size = |seam: u32, turn: f64| match &estimate {
-            Some((patches, log_scale)) => patches.size(seam, turn, log_scale),
-            None => turn.abs(),
+        let change = |v: Vertex, d: f64| {
+            if mesh.is_boundary(v) { 0.0 } else { (index[v] + d).abs() - index[v].abs() }
         };
-        let bias = options.cone_bias;
-        let chosen = choose(mesh, matched, &rotation, &index, &open, threshold, bias, size);
+        let cost = |seam: u32, turn: f64| {
+            let size = match &estimate {
+                Some((patches, log_scale)) => patches.size(seam, turn, log_scale),
+                None => turn.abs(),
+            };
+            let h = matched.cut.seams[seam as usize];
+            size + options.cone_bias * (change(mesh.origin(h), -turn) + change(mesh.tip(h), turn))
+        };
+        let chosen = choose(mesh, &matched.cut, &rotation, &open, threshold, cost);
         stats.rounds += 1;
         if chosen.is_empty() {
             continue;
@@ -152,27 +159,17 @@ fn interior_indices(
 /// turns at least a vertex apart.
 fn choose(
     mesh: &TriMesh,
-    matched: &MatchedCut,
+    cut: &Cut,
     rotation: &[f64],
-    index: &VertexData<f64>,
     open: &[u32],
     threshold: f64,
-    bias: f64,
-    size: impl Fn(u32, f64) -> f64,
+    cost: impl Fn(u32, f64) -> f64,
 ) -> Vec<(u32, i32)> {
-    let change = |v: Vertex, d: f64| {
-        if mesh.is_boundary(v) { 0.0 } else { (index[v] + d).abs() - index[v].abs() }
-    };
     let mut candidates: Vec<(f64, u32, i32)> = open
         .iter()
         .filter_map(|&seam| {
-            let h = matched.cut.seams[seam as usize];
-            let (o, d) = (mesh.origin(h), mesh.tip(h));
             let r = rotation[seam as usize];
-            let cost = |integer: f64| {
-                let turn = integer - r;
-                size(seam, turn) + bias * (change(o, -turn) + change(d, turn))
-            };
+            let cost = |integer: f64| cost(seam, integer - r);
             let (low, high) = (cost(r.floor()), cost(r.ceil()));
             let (cost, integer) =
                 if high < low - 1e-12 { (high, r.ceil()) } else { (low, r.floor()) };
@@ -185,7 +182,7 @@ fn choose(
         if (f64::from(integer) - rotation[seam as usize]).abs() <= LARGE_TURN {
             return true;
         }
-        let h = matched.cut.seams[seam as usize];
+        let h = cut.seams[seam as usize];
         let (o, d) = (mesh.origin(h), mesh.tip(h));
         let free = !used[o] && !used[d];
         used[o] |= free;

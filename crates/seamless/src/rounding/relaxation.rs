@@ -103,10 +103,8 @@ impl Relaxation {
         for &(i, ci) in row {
             for &(j, cj) in row {
                 // Entry (i, j) is conj(c_i) c_j; only the lower triangle is stored.
-                if i >= j {
-                    if let Some(slot) = self.pattern.slot(i, j) {
-                        self.matrix[slot as usize] += weight * ci.conj() * cj;
-                    }
+                if let Some(slot) = self.pattern.slot(i, j).filter(|_| i >= j) {
+                    self.matrix[slot as usize] += weight * ci.conj() * cj;
                 }
             }
         }
