@@ -1,5 +1,6 @@
 //! Sums of small dense blocks into a sparse symmetric matrix, in parallel and always in one order.
 
+use crate::buckets::Buckets;
 use crate::pattern::{Pattern, PatternBuilder};
 use rayon::prelude::*;
 
@@ -17,41 +18,16 @@ pub struct Assembly {
     unknowns: Vec<u32>,
     /// Start of each element's block.
     block_offsets: Vec<u32>,
-    matrix: Gather,
-    vector: Gather,
+    /// Block entries of each matrix entry, local entries of each unknown.
+    matrix: Buckets,
+    vector: Buckets,
 }
 
-/// For each target the positions of its contributions.
-#[derive(Debug, Clone, Default)]
-struct Gather {
-    offsets: Vec<u32>,
-    sources: Vec<u32>,
-}
-
-impl Gather {
-    fn new(n_targets: usize, target_of_source: &[u32]) -> Self {
-        let mut offsets = vec![0u32; n_targets + 1];
-        for &t in target_of_source {
-            offsets[t as usize + 1] += 1;
-        }
-        for i in 0..n_targets {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut fill = offsets.clone();
-        let mut sources = vec![0u32; target_of_source.len()];
-        for (source, &t) in target_of_source.iter().enumerate() {
-            sources[fill[t as usize] as usize] = source as u32;
-            fill[t as usize] += 1;
-        }
-        Self { offsets, sources }
-    }
-
-    fn sum(&self, values: &[f64], targets: &mut [f64]) {
-        targets.par_iter_mut().enumerate().with_min_len(4096).for_each(|(i, out)| {
-            let range = self.offsets[i] as usize..self.offsets[i + 1] as usize;
-            *out = self.sources[range].iter().map(|&s| values[s as usize]).sum();
-        });
-    }
+/// Adds up, for each target, the values it gathers.
+fn gather(buckets: &Buckets, values: &[f64], targets: &mut [f64]) {
+    targets.par_iter_mut().enumerate().with_min_len(4096).for_each(|(i, out)| {
+        *out = buckets.of(i).iter().map(|&source| values[source as usize]).sum();
+    });
 }
 
 impl Assembly {
@@ -74,8 +50,8 @@ impl Assembly {
             block_offsets.push(slots.len() as u32);
         }
         Self {
-            matrix: Gather::new(pattern.len(), &slots),
-            vector: Gather::new(order, &all),
+            matrix: Buckets::new(pattern.len(), &slots),
+            vector: Buckets::new(order, &all),
             pattern,
             element_offsets,
             unknowns: all,
@@ -115,17 +91,17 @@ impl Assembly {
 
     /// Total length of the blocks.
     pub fn blocks_len(&self) -> usize {
-        self.matrix.sources.len()
+        self.matrix.len()
     }
 
     /// Sums the blocks into the lower triangle of the matrix.
     pub fn sum_matrix(&self, blocks: &[f64], values: &mut [f64]) {
-        self.matrix.sum(blocks, values);
+        gather(&self.matrix, blocks, values);
     }
 
     /// Sums the local vectors into one vector.
     pub fn sum_vector(&self, locals: &[f64], vector: &mut [f64]) {
-        self.vector.sum(locals, vector);
+        gather(&self.vector, locals, vector);
     }
 }
 

@@ -3,17 +3,20 @@
 //! A few ideas, one file each:
 //! * [`ordering`]: nested dissection of a graph (METIS), so that factors stay sparse;
 //! * [`pattern`]: a symmetric sparsity pattern that is built once and filled many times;
+//! * [`buckets`]: ids grouped by a key;
 //! * [`assembly`]: sums of small dense blocks into such a pattern;
 //! * [`dense`]: small dense systems;
 //! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once.
 
 pub mod assembly;
+pub mod buckets;
 pub mod cholesky;
 pub mod dense;
 pub mod ordering;
 pub mod pattern;
 
 pub use assembly::Assembly;
+pub use buckets::Buckets;
 pub use cholesky::{Cholesky, Kernel, NotPositiveDefinite, Scalar};
 pub use num_complex::Complex64;
 pub use pattern::{Pattern, PatternBuilder};

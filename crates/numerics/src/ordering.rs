@@ -1,5 +1,6 @@
 //! Fill-reducing orderings.
 
+use crate::buckets::Buckets;
 use std::sync::Mutex;
 
 /// Undirected graph in compressed form: the neighbours of node `i` are
@@ -14,36 +15,22 @@ pub struct Graph {
 
 impl Graph {
     /// Builds the graph from edges given in any order; repetitions and loops are dropped.
-    pub fn from_edges(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
-        let mut count = vec![0u32; n + 1];
-        for (a, b) in edges.clone().filter(|(a, b)| a != b) {
-            count[a as usize + 1] += 1;
-            count[b as usize + 1] += 1;
-        }
-        for i in 0..n {
-            count[i + 1] += count[i];
-        }
-        let mut fill = count.clone();
-        let mut all = vec![0i32; count[n] as usize];
-        for (a, b) in edges.filter(|(a, b)| a != b) {
-            all[fill[a as usize] as usize] = b as i32;
-            fill[a as usize] += 1;
-            all[fill[b as usize] as usize] = a as i32;
-            fill[b as usize] += 1;
-        }
-        let mut graph =
-            Graph { offsets: Vec::with_capacity(n + 1), neighbours: Vec::with_capacity(all.len()) };
+    pub fn from_edges(n: usize, edges: impl Iterator<Item = (u32, u32)>) -> Self {
+        let (from, to): (Vec<u32>, Vec<u32>) =
+            edges.filter(|(a, b)| a != b).flat_map(|(a, b)| [(a, b), (b, a)]).unzip();
+        let by_node = Buckets::new(n, &from);
+        let mut graph = Graph {
+            offsets: Vec::with_capacity(n + 1),
+            neighbours: Vec::with_capacity(from.len()),
+        };
         graph.offsets.push(0);
-        for i in 0..n {
-            let list = &mut all[count[i] as usize..count[i + 1] as usize];
+        let mut list = Vec::new();
+        for node in 0..n {
+            list.clear();
+            list.extend(by_node.of(node).iter().map(|&e| to[e as usize] as i32));
             list.sort_unstable();
-            let mut last = -1;
-            for &x in list.iter() {
-                if x != last {
-                    graph.neighbours.push(x);
-                    last = x;
-                }
-            }
+            list.dedup();
+            graph.neighbours.extend_from_slice(&list);
             graph.offsets.push(graph.neighbours.len() as i32);
         }
         graph

@@ -1,5 +1,7 @@
 //! Symmetric sparsity patterns, built once and filled many times.
 
+use crate::buckets::Buckets;
+
 /// Lower triangle of a symmetric pattern by columns, diagonal first in each column.
 #[derive(Debug, Clone)]
 pub struct Pattern {
@@ -82,37 +84,21 @@ impl PatternBuilder {
 
     /// Sorts and removes repetitions.
     pub fn build(self) -> Pattern {
-        // Counting sort by column, then a short sort inside each column: the columns are small.
-        let mut offsets = vec![0u32; self.order + 1];
-        for &e in &self.entries {
-            offsets[(e >> 32) as usize + 1] += 1;
-        }
-        for i in 0..self.order {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut fill = offsets.clone();
-        let mut all = vec![0u32; self.entries.len()];
-        for &e in &self.entries {
-            let column = (e >> 32) as usize;
-            all[fill[column] as usize] = e as u32;
-            fill[column] += 1;
-        }
-        drop(self.entries);
+        // Group by column, then sort inside each column: the columns are small.
+        let columns: Vec<u32> = self.entries.iter().map(|&e| (e >> 32) as u32).collect();
+        let by_column = Buckets::new(self.order, &columns);
         let mut pattern = Pattern {
             column_offsets: Vec::with_capacity(self.order + 1),
-            rows: Vec::with_capacity(all.len() / 2),
+            rows: Vec::with_capacity(self.entries.len() / 2),
         };
         pattern.column_offsets.push(0);
+        let mut rows = Vec::new();
         for column in 0..self.order {
-            let list = &mut all[offsets[column] as usize..offsets[column + 1] as usize];
-            list.sort_unstable();
-            let mut last = u32::MAX;
-            for &row in list.iter() {
-                if row != last {
-                    pattern.rows.push(row);
-                    last = row;
-                }
-            }
+            rows.clear();
+            rows.extend(by_column.of(column).iter().map(|&e| self.entries[e as usize] as u32));
+            rows.sort_unstable();
+            rows.dedup();
+            pattern.rows.extend_from_slice(&rows);
             pattern.column_offsets.push(pattern.rows.len() as u32);
         }
         pattern

@@ -1,6 +1,7 @@
 //! Real meshes against their topology and bounds on distortion, if a collection of them is there.
 //!
 //! The collection is the folder `SEAMSTRESS_MESHES`, by default `../shared/meshes` beside the workspace.
+#![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
 mod common;
 

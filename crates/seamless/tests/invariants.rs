@@ -1,4 +1,5 @@
 //! What each stage keeps before anything is laid out exactly: cuts, unfoldings, indices, roundings.
+#![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! What layouts keep: seams that close whatever the unknowns, areas, angles, energies, frames.
+#![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
 mod common;
 
@@ -11,11 +12,12 @@ use seamstress::layout::exact::{ExactLayout, is_positive};
 use seamstress::layout::homotopy::{Continuation, angle_sums, barrier, continuation};
 use seamstress::layout::isometric::unfold;
 use seamstress::layout::newton::{NewtonOptions, Stop, minimize};
-use seamstress::layout::problem::{LayoutProblem, Triangle, largest_step, triangles};
+use seamstress::layout::problem::LayoutProblem;
 use seamstress::layout::safeguards::{lay_out, retree};
 use seamstress::layout::space::{
     LinearSpace, regauge, seam_residual, seamless_space, turned_vertices,
 };
+use seamstress::layout::triangle::{Triangle, largest_step, triangles};
 use seamstress::quarter::{rotation, turn};
 use seamstress::rounding::{MatchedCut, RoundingOptions, repair, round};
 use seamstress_surface::soup::TriangleSoup;

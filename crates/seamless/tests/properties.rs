@@ -1,5 +1,6 @@
 //! Random surfaces of genus 0 to 3 with 0 to 3 boundary loops, held to what must not depend on how
 //! a surface is stored, placed or computed.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
 
 mod common;
 

@@ -8,8 +8,9 @@
 
 use clap::{Parser, value_parser};
 use seamstress::cut::Cut;
-use seamstress::layout::problem::{LayoutProblem, triangles};
+use seamstress::layout::problem::LayoutProblem;
 use seamstress::layout::space::LinearSpace;
+use seamstress::layout::triangle::triangles;
 use seamstress::{MapOptions, Stage, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};

@@ -8,8 +8,10 @@
 use super::energy::SymmetricDirichlet;
 use super::isometric::unfold;
 use super::newton::{NewtonOptions, minimize};
-use super::problem::{LayoutProblem, SeamPenalty, Triangle, triangles};
+use super::penalty::SeamPenalty;
+use super::problem::LayoutProblem;
 use super::space::LinearSpace;
+use super::triangle::{Triangle, triangles};
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::{rotation, unit};
 use crate::rounding::MatchedCut;

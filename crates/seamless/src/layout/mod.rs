@@ -6,6 +6,8 @@ pub mod exact;
 pub mod homotopy;
 pub mod isometric;
 pub mod newton;
+pub mod penalty;
 pub mod problem;
 pub mod safeguards;
 pub mod space;
+pub mod triangle;

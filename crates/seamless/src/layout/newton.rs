@@ -1,7 +1,8 @@
 //! Projected Newton on a flip-free layout.
 
 use super::energy::Energy;
-use super::problem::{LayoutProblem, largest_step};
+use super::problem::LayoutProblem;
+use super::triangle::largest_step;
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 

@@ -1,7 +1,9 @@
 //! A layout problem: triangles, the space their corners live in, and one factorisation for both.
 
-use super::energy::{Energy, Jacobian, ProjectedHessian};
+use super::energy::{Energy, ProjectedHessian};
+use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
+use super::triangle::{CHUNK, Triangle, sum_over, triangles};
 use crate::cut::Cut;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -9,169 +11,12 @@ use seamstress_numerics::ordering::{Graph, expand, nested_dissection};
 use seamstress_numerics::{Assembly, Cholesky, NotPositiveDefinite};
 use seamstress_surface::{Metric, TriMesh};
 
-/// Faces per parallel task; sums are taken per task, then in order, so that the number of threads does
-/// not show in the result.
-const CHUNK: usize = 2048;
-
-/// A triangle as layouts see it.
-#[derive(Debug, Clone, Copy)]
-pub struct Triangle {
-    /// Wedges of its corners.
-    pub wedges: [u32; 3],
-    /// Gradients of the corner hat functions; `J = sum of uv_k times gradient_k`.
-    pub gradients: [[f64; 2]; 3],
-    /// Share of the total area.
-    pub weight: f64,
-}
-
-impl Triangle {
-    fn corners(&self, z: &[Complex64]) -> [Complex64; 3] {
-        self.wedges.map(|w| z[w as usize])
-    }
-
-    /// The Jacobian of the layout on this triangle.
-    #[inline]
-    pub fn jacobian(&self, z: &[Complex64]) -> Jacobian {
-        let mut j = [[0.0; 2]; 2];
-        for (z, g) in self.corners(z).into_iter().zip(self.gradients) {
-            j[0][0] += z.re * g[0];
-            j[0][1] += z.re * g[1];
-            j[1][0] += z.im * g[0];
-            j[1][1] += z.im * g[1];
-        }
-        Jacobian::from_rows(j)
-    }
-
-    /// Twice the signed area in the layout.
-    #[inline]
-    pub fn doubled_area(&self, z: &[Complex64]) -> f64 {
-        let [a, b, c] = self.corners(z);
-        ((b - a).conj() * (c - a)).im
-    }
-}
-
-/// The triangles of a cut mesh with a metric.
-pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
-    let total = metric.total_area();
-    mesh.faces()
-        .map(|f| {
-            let [_, p, q] = metric.flat[f];
-            let determinant = p.re * q.im - p.im * q.re;
-            let g1 = [q.im / determinant, -q.re / determinant];
-            let g2 = [-p.im / determinant, p.re / determinant];
-            Triangle {
-                wedges: f.halfedges().map(|h| cut.wedge[h]),
-                gradients: [[-g1[0] - g2[0], -g1[1] - g2[1]], g1, g2],
-                weight: metric.area[f] / total,
-            }
-        })
-        .collect()
-}
-
-/// Deterministic parallel sum over triangles.
-pub fn sum_over(triangles: &[Triangle], value: impl Fn(&Triangle) -> f64 + Sync) -> f64 {
-    let parts: Vec<f64> =
-        triangles.par_chunks(CHUNK).map(|chunk| chunk.iter().map(&value).sum()).collect();
-    parts.iter().sum()
-}
-
-/// The largest step along `dz` before some triangle's area vanishes; infinite if none does.
-pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -> f64 {
-    let step = |t: &Triangle| {
-        let ([a, b, c], [da, db, dc]) = (t.corners(z), t.corners(dz));
-        let cross = |p: Complex64, q: Complex64| (p.conj() * q).im;
-        let (e, f, de, df) = (b - a, c - a, db - da, dc - da);
-        smallest_positive_root(cross(de, df), cross(e, df) + cross(de, f), cross(e, f))
-    };
-    triangles
-        .par_chunks(CHUNK)
-        .map(|chunk| chunk.iter().map(step).fold(f64::INFINITY, f64::min))
-        .reduce(|| f64::INFINITY, f64::min)
-}
-
-/// Smallest positive root of `a t^2 + b t + c`.
-fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 {
-        return f64::INFINITY;
-    }
-    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
-    let positive = |t: f64| if t > 0.0 { t } else { f64::INFINITY };
-    positive(q / a).min(positive(c / q))
-}
-
 /// How the six corner coordinates of a triangle depend on its unknowns.
 enum ElementMap {
     /// Each coordinate is an unknown of its own, in order.
     Direct,
     /// Row-major 6 x m matrix.
     Matrix(Vec<f64>),
-}
-
-/// Soft closing of seams: `weight / 2 * sum |e_right - rotation e_left|^2`.
-pub struct SeamPenalty {
-    seams: Vec<SeamElement>,
-    /// Rotation of each seam.
-    pub rotations: Vec<Complex64>,
-    /// Weight of all of them.
-    pub weight: f64,
-}
-
-struct SeamElement {
-    /// Distinct wedges of the seam.
-    wedges: Vec<u32>,
-    /// Coefficient of each is `constant + linear * rotation`.
-    constant: Vec<f64>,
-    linear: Vec<f64>,
-}
-
-impl SeamElement {
-    fn new([a, b, c, d]: [u32; 4]) -> Self {
-        let mut element = Self { wedges: Vec::new(), constant: Vec::new(), linear: Vec::new() };
-        // (d - c) - rotation (b - a)
-        for (wedge, constant, linear) in
-            [(a, 0.0, 1.0), (b, 0.0, -1.0), (c, -1.0, 0.0), (d, 1.0, 0.0)]
-        {
-            let k = element.wedges.iter().position(|&w| w == wedge).unwrap_or_else(|| {
-                element.wedges.push(wedge);
-                element.constant.push(0.0);
-                element.linear.push(0.0);
-                element.wedges.len() - 1
-            });
-            element.constant[k] += constant;
-            element.linear[k] += linear;
-        }
-        element
-    }
-
-    fn coefficient(&self, k: usize, rotation: Complex64) -> Complex64 {
-        self.constant[k] + self.linear[k] * rotation
-    }
-
-    fn gap(&self, rotation: Complex64, z: &[Complex64]) -> Complex64 {
-        let term = |k: usize| self.coefficient(k, rotation) * z[self.wedges[k] as usize];
-        (0..self.wedges.len()).map(term).sum()
-    }
-}
-
-impl SeamPenalty {
-    /// Penalty on all seams of a cut.
-    pub fn new(mesh: &TriMesh, cut: &Cut, rotations: Vec<Complex64>, weight: f64) -> Self {
-        let element = |&h| SeamElement::new(cut.seam_wedges(mesh, h));
-        Self { seams: cut.seams.iter().map(element).collect(), rotations, weight }
-    }
-
-    /// Value at a layout.
-    pub fn value(&self, z: &[Complex64]) -> f64 {
-        let squares = self.seams.iter().zip(&self.rotations).map(|(s, &r)| s.gap(r, z).norm_sqr());
-        0.5 * self.weight * squares.sum::<f64>()
-    }
-
-    /// The largest mismatch of a seam.
-    pub fn largest_gap(&self, z: &[Complex64]) -> f64 {
-        let gaps = self.seams.iter().zip(&self.rotations).map(|(s, &r)| s.gap(r, z).norm());
-        gaps.fold(0.0, f64::max)
-    }
 }
 
 /// Triangles over a linear space, with everything that is prepared once: element maps, assembly,
@@ -201,8 +46,8 @@ impl LayoutProblem {
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
             triangles.iter().map(|t| element_map(&space, t)).unzip();
-        for seam in penalty.iter().flat_map(|p| &p.seams) {
-            elements.push(seam.wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
+        for wedges in penalty.iter().flat_map(SeamPenalty::elements) {
+            elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
         let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
         let order = order_pairs(space.n_unknowns() / 2, &elements);
@@ -282,7 +127,10 @@ impl LayoutProblem {
                 }
             }
         });
-        self.fill_seams(z);
+        if let Some(penalty) = &self.penalty {
+            let first = self.triangles.len();
+            penalty.fill(z, &self.assembly, first, &mut self.blocks, &mut self.locals);
+        }
         self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
         let mut gradient = vec![0.0; self.space.n_unknowns()];
         self.assembly.sum_vector(&self.locals, &mut gradient);
@@ -367,34 +215,6 @@ impl LayoutProblem {
                 local_at += local_len;
             }
         });
-    }
-
-    fn fill_seams(&mut self, z: &[Complex64]) {
-        let Some(penalty) = &self.penalty else { return };
-        let first = self.triangles.len();
-        for (s, (seam, &rotation)) in penalty.seams.iter().zip(&penalty.rotations).enumerate() {
-            let gap = seam.gap(rotation, z);
-            let vector = &mut self.locals[self.assembly.local(first + s)];
-            let block = &mut self.blocks[self.assembly.block(first + s)];
-            let n = seam.wedges.len();
-            let c: Vec<Complex64> = (0..n).map(|k| seam.coefficient(k, rotation)).collect();
-            for i in 0..n {
-                let g = penalty.weight * c[i].conj() * gap;
-                vector[2 * i] = g.re;
-                vector[2 * i + 1] = g.im;
-                for j in 0..=i {
-                    // real 2 x 2 form of conj(c_i) c_j; on the diagonal it is a multiple of the identity
-                    let p = penalty.weight * c[i].conj() * c[j];
-                    let at = |row: usize, column: usize| row * (row + 1) / 2 + column;
-                    block[at(2 * i, 2 * j)] = p.re;
-                    block[at(2 * i + 1, 2 * j)] = p.im;
-                    block[at(2 * i + 1, 2 * j + 1)] = p.re;
-                    if j < i {
-                        block[at(2 * i, 2 * j + 1)] = -p.im;
-                    }
-                }
-            }
-        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::quarter::{direction, unit};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
-use seamstress_numerics::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_numerics::{Buckets, Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_surface::{Halfedge, Metric, TriMesh, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
@@ -26,8 +26,7 @@ pub(super) struct Relaxation {
     /// wedge is its right-hand side.
     corner_weights: Vec<Complex64>,
     wedge_of_corner: Vec<u32>,
-    corners_of_wedge: Vec<u32>,
-    wedge_offsets: Vec<u32>,
+    corners_of_wedge: Buckets,
     frames: Vec<Complex64>,
     seams: Vec<[u32; 4]>,
     pattern: Pattern,
@@ -60,15 +59,13 @@ impl Relaxation {
             z,
             corner_weights: corner_weights(mesh, metric),
             wedge_of_corner: cut.wedge.to_vec(),
-            corners_of_wedge: Vec::new(),
-            wedge_offsets: Vec::new(),
+            corners_of_wedge: Buckets::new(n, &cut.wedge),
             frames: vec![Complex64::ONE; faces.len()],
             seams,
             matrix: vec![Complex64::ZERO; pattern.len()],
             pattern,
             cholesky,
         };
-        relaxation.index_corners(n);
         let cotangent = metric.cotangent();
         for h in mesh.halfedges() {
             let [a, b] = cut.ends(h);
@@ -78,24 +75,6 @@ impl Relaxation {
             relaxation.matrix[k as usize] += SHIFT;
         }
         Ok(relaxation)
-    }
-
-    fn index_corners(&mut self, n_wedges: usize) {
-        let mut offsets = vec![0u32; n_wedges + 1];
-        for &w in &self.wedge_of_corner {
-            offsets[w as usize + 1] += 1;
-        }
-        for i in 0..n_wedges {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut fill = offsets.clone();
-        let mut corners = vec![0u32; self.wedge_of_corner.len()];
-        for (corner, &w) in self.wedge_of_corner.iter().enumerate() {
-            corners[fill[w as usize] as usize] = corner as u32;
-            fill[w as usize] += 1;
-        }
-        self.corners_of_wedge = corners;
-        self.wedge_offsets = offsets;
     }
 
     /// Adds `weight |sum of c z|^2` to the quadratic form.
@@ -143,11 +122,10 @@ impl Relaxation {
 
     fn right_hand_side(&mut self) {
         let (frames, weights) = (&self.frames, &self.corner_weights);
-        let (corners, offsets) = (&self.corners_of_wedge, &self.wedge_offsets);
+        let corners = &self.corners_of_wedge;
         self.z.par_iter_mut().enumerate().with_min_len(4096).for_each(|(w, out)| {
-            let range = offsets[w] as usize..offsets[w + 1] as usize;
-            *out =
-                corners[range].iter().map(|&c| frames[c as usize / 3] * weights[c as usize]).sum();
+            let terms = corners.of(w).iter().map(|&c| frames[c as usize / 3] * weights[c as usize]);
+            *out = terms.sum();
         });
     }
 
