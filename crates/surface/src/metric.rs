@@ -39,7 +39,11 @@ impl Metric {
             .flatten()
             .fold(0.0f64, |m, x| m.max(x.abs()))
             .clamp(f64::MIN_POSITIVE, f64::MAX);
-        let scale = power_of_two_near(1.0 / (extent * 0.5).max(f64::MIN_POSITIVE));
+        let scale = if extent > f64::MIN_POSITIVE {
+            power_of_two_near(1.0 / (extent * 0.5).max(f64::MIN_POSITIVE))
+        } else {
+            1.0
+        };
         let edge = |h: Halfedge| {
             let (a, b) = (positions[mesh.origin(h).at()], positions[mesh.tip(h).at()]);
             [0, 1, 2].map(|k| b[k] * scale - a[k] * scale)

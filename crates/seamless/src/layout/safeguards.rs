@@ -6,6 +6,7 @@ use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use crate::cut::DualTree;
+use crate::map::Violations;
 use crate::progress::{Cancelled, Watch};
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
@@ -72,6 +73,9 @@ pub enum LayoutError {
     /// Every route left defects; those of the last one.
     #[error("no route gave a layout without defects; the last one left {0}")]
     Defective(Defects),
+    /// The layout stood, but its UVs did not pass the certificate (ids of the component).
+    #[error("the component's map failed its certificate: {0}")]
+    Uncertified(Violations),
     /// A linear system could not be solved.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),

@@ -4,9 +4,11 @@ use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::{ComponentStats, MapOptions, StageStats};
 use crate::cut::DualTree;
-use crate::layout::safeguards::{LayoutError, lay_out, way_back};
+use crate::layout::safeguards::{Laid, LayoutError, lay_out, way_back};
+use crate::map::{SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
 use crate::rounding::{MatchedCut, repair, round};
+use num_complex::Complex64;
 use seamstress_surface::{Component, Halfedge, Metric, TriMesh, Vertex};
 use std::time::Instant;
 
@@ -68,13 +70,22 @@ fn solve(
     }
 
     let mut laid = finished.laid;
+    let mut candidates = vec![corner_uvs(mesh, plain, &laid)];
     if exponent < 1.0 {
         laid.y = way_back(mesh, plain, &mut laid.layout, laid.y, exponent, watch)?;
+        candidates.push(corner_uvs(mesh, plain, &laid));
     }
-    laid.layout.rescale(&mut laid.y);
-    let z = laid.layout.expand(&laid.y);
-    let uv = |h: Halfedge| z[laid.layout.cut.wedge[h] as usize] * plain.unit;
-    let uvs = mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect();
+    // The thinnest triangles may flip when the result is scaled and moved: look at what is given out.
+    let certify = |uvs: &Vec<_>| SeamlessMap::certify(mesh, uvs.clone(), &options.tolerance);
+    let mut failure = Violations(Vec::new());
+    let certified = candidates.into_iter().rev().find(|uvs| match certify(uvs) {
+        Ok(_) => true,
+        Err(violations) => {
+            failure = violations;
+            false
+        }
+    });
+    let Some(uvs) = certified else { return Err(LayoutError::Uncertified(failure)) };
     let stats = ComponentStats {
         faces: mesh.n_faces(),
         genus: mesh.genus(),
@@ -86,6 +97,18 @@ fn solve(
         stages: clock.laps,
     };
     Ok((uvs, stats))
+}
+
+/// UVs per corner in mesh units at the best global scale, the lower left corner of their box at zero.
+fn corner_uvs(mesh: &TriMesh, plain: &Metric, laid: &Laid) -> Vec<[f64; 2]> {
+    let mut y = laid.y.clone();
+    laid.layout.rescale(&mut y);
+    let z = laid.layout.expand(&y);
+    let low =
+        |coordinate: fn(&Complex64) -> f64| z.iter().map(coordinate).fold(f64::INFINITY, f64::min);
+    let corner = Complex64::new(low(|z| z.re), low(|z| z.im));
+    let uv = |h: Halfedge| (z[laid.layout.cut.wedge[h] as usize] - corner) * plain.unit;
+    mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect()
 }
 
 /// The dual tree that crosses flat edges first, so that seams run through curved vertices.

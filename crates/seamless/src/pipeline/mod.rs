@@ -19,7 +19,8 @@ pub struct MapOptions {
     /// The rounding loop.
     pub rounding: RoundingOptions,
     /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
-    /// cones as rounded.
+    /// cones as rounded. Whatever the price, clean-up is undone where it raises tau by more than 5 % or
+    /// the energy's excess over 4 by more than 20 %.
     pub cone_price: f64,
     /// Tolerance of the certificate.
     pub tolerance: Tolerance,
@@ -87,6 +88,20 @@ pub enum MapError {
     /// The caller asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The number of positions is not that of the vertices.
+    #[error("{found} positions for {expected} vertices")]
+    PositionCount {
+        /// Vertices of the mesh.
+        expected: usize,
+        /// Positions given.
+        found: usize,
+    },
+    /// A position is not finite.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NonFinitePosition {
+        /// The vertex.
+        vertex: u32,
+    },
     /// A component could not be laid out.
     #[error("component {component} (with face {face}): {cause}")]
     Component {
@@ -120,6 +135,13 @@ pub fn make_map(
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
+    let (expected, found) = (mesh.n_vertices(), positions.len());
+    if expected != found {
+        return Err(MapError::PositionCount { expected, found });
+    }
+    if let Some(v) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(MapError::NonFinitePosition { vertex: v as u32 });
+    }
     let pieces = components::components(mesh).unwrap_or_default();
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
@@ -157,17 +179,13 @@ fn in_whole(piece: &Component, defects: Defects) -> Defects {
 
 /// Moves a component's UVs to the right of what stands there; returns the new right edge.
 fn place(piece: &Component, uvs: &[[f64; 2]], left_edge: f64, all: &mut [[f64; 2]]) -> f64 {
-    let range = |k: usize| {
-        let low = uvs.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-        let high = uvs.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
-        (low, high)
-    };
-    let ((u0, u1), (v0, _)) = (range(0), range(1));
+    let mut right_edge = left_edge;
     for (i, &Face(f)) in piece.faces.iter().enumerate() {
         for k in 0..3 {
             let [u, v] = uvs[3 * i + k];
-            all[3 * f as usize + k] = [u - u0 + left_edge, v - v0];
+            all[3 * f as usize + k] = [u + left_edge, v];
+            right_edge = right_edge.max(u + left_edge);
         }
     }
-    left_edge + (u1 - u0) * 1.02
+    left_edge + (right_edge - left_edge) * 1.02
 }

@@ -9,6 +9,7 @@ use crate::layout::isometric::unfold;
 use crate::progress::Watch;
 use num_complex::Complex64;
 use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
+use std::cmp::Ordering;
 
 /// How the size of a rounding is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -27,7 +28,9 @@ pub struct RoundingOptions {
     /// How the size of a rounding is judged.
     pub strategy: RoundingStrategy,
     /// How much a rounding that makes cones costs, against one that only turns: 0 gives the lowest
-    /// distortion and two to five times the cones, 0.5 half the cones for about 0.02 of energy.
+    /// distortion and two to five times the cones, one half the cones for about 0.02 of energy. At
+    /// exactly one half, cancelling a pair of cones by a whole turn costs as little as not turning at
+    /// all, and beyond it cones are cancelled where they belong; the default stays below.
     pub cone_bias: f64,
     /// Rounds over which the threshold on the cost grows to its last value.
     pub rounds: usize,
@@ -39,7 +42,7 @@ impl Default for RoundingOptions {
     fn default() -> Self {
         Self {
             strategy: RoundingStrategy::default(),
-            cone_bias: 0.5,
+            cone_bias: 0.49,
             rounds: 60,
             layout_iterations: 8,
         }
@@ -58,6 +61,8 @@ pub struct RoundingStats {
 /// Cost threshold of the first and last round.
 const FIRST_THRESHOLD: f64 = 0.05;
 const LAST_THRESHOLD: f64 = 1.0;
+/// Costs closer than this are the same.
+const SAME_COST: f64 = 1e-9;
 /// A new layout is worth its time once this share of the seams was rounded.
 const LAYOUT_SHARE: f64 = 0.005;
 /// Roundings that turn a seam by more than this (quarters) keep apart within a round.
@@ -165,29 +170,70 @@ fn choose(
     threshold: f64,
     cost: impl Fn(u32, f64) -> f64,
 ) -> Vec<(u32, i32)> {
-    let mut candidates: Vec<(f64, u32, i32)> = open
+    let mut candidates: Vec<Candidate> = open
         .iter()
         .filter_map(|&seam| {
             let r = rotation[seam as usize];
             let cost = |integer: f64| cost(seam, integer - r);
-            let (low, high) = (cost(r.floor()), cost(r.ceil()));
-            let (cost, integer) =
-                if high < low - 1e-12 { (high, r.ceil()) } else { (low, r.floor()) };
-            (cost <= threshold).then_some((cost, seam, integer as i32))
+            let option = |integer: f64| Candidate {
+                cost: cost(integer),
+                turn: (integer - r).abs(),
+                seam,
+                integer: integer as i32,
+            };
+            let best = option(r.floor()).min(option(r.ceil()));
+            (best.cost <= threshold).then_some(best)
         })
         .collect();
-    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    candidates.sort_unstable();
     let mut used = VertexData::filled(mesh.n_vertices(), false);
-    candidates.retain(|&(_, seam, integer)| {
-        if (f64::from(integer) - rotation[seam as usize]).abs() <= LARGE_TURN {
+    candidates.retain(|candidate| {
+        if candidate.turn <= LARGE_TURN {
             return true;
         }
-        let h = cut.seams[seam as usize];
+        let h = cut.seams[candidate.seam as usize];
         let (o, d) = (mesh.origin(h), mesh.tip(h));
         let free = !used[o] && !used[d];
         used[o] |= free;
         used[d] |= free;
         free
     });
-    candidates.into_iter().map(|(_, seam, integer)| (seam, integer)).collect()
+    candidates.into_iter().map(|c| (c.seam, c.integer)).collect()
 }
+
+/// A rounding, ordered by cost, then by how little it turns, then by seam. Costs and turns that differ by
+/// rounding errors only count as equal: these must not decide.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    cost: f64,
+    turn: f64,
+    seam: u32,
+    integer: i32,
+}
+
+impl Candidate {
+    fn key(&self) -> (i64, i64, u32, i32) {
+        let coarse = |x: f64| (x / SAME_COST).round() as i64;
+        (coarse(self.cost), coarse(self.turn), self.seam, self.integer)
+    }
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}
