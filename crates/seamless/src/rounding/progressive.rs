@@ -28,9 +28,9 @@ pub struct RoundingOptions {
     /// How the size of a rounding is judged.
     pub strategy: RoundingStrategy,
     /// How much a rounding that makes cones costs, against one that only turns: 0 gives the lowest
-    /// distortion and two to five times the cones, one half the cones for about 0.02 of energy. At
-    /// exactly one half, cancelling a pair of cones by a whole turn costs as little as not turning at
-    /// all, and beyond it cones are cancelled where they belong; the default stays below.
+    /// distortion and two to five times the cones, one half the cones for about 0.02 of energy. At one
+    /// half, cancelling a pair of unit cones by a whole turn costs as little as not turning at all (the
+    /// smaller turn wins); beyond it cones are cancelled where they belong.
     pub cone_bias: f64,
     /// Rounds over which the threshold on the cost grows to its last value.
     pub rounds: usize,
@@ -42,7 +42,7 @@ impl Default for RoundingOptions {
     fn default() -> Self {
         Self {
             strategy: RoundingStrategy::default(),
-            cone_bias: 0.49,
+            cone_bias: 0.5,
             rounds: 60,
             layout_iterations: 8,
         }
