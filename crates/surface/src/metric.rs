@@ -76,8 +76,8 @@ impl Metric {
     /// The metric whose lengths are these raised to the power `p`, in units of the new mean.
     ///
     /// For `p <= 1` the triangle inequality survives, and for `p` near one half thin triangles open up:
-    /// an angle of 1e-9 becomes one of 3e-5, and coincident vertices come apart ("snowflake" metric). Lengths below `1e-9` are
-    /// raised to it first.
+    /// an angle of 1e-9 becomes one of 3e-5, and coincident vertices come apart ("snowflake" metric).
+    /// Lengths below `1e-9` are raised to it first.
     pub fn snowflake(&self, mesh: &TriMesh, p: f64) -> Self {
         let mut length: HalfedgeData<f64> =
             self.length.iter().map(|l| l.max(1e-9).powf(p)).collect();

@@ -99,11 +99,14 @@ const SNOWFLAKES: [f64; 2] = [0.5, 0.3];
 const WAY_BACK: [f64; 7] = [0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
 const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-4 };
 
-/// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation, the same over a
-/// better dual tree, the same in snowflake metrics, in this order, until one has no flip and no wrong
-/// cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
+/// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation,
+/// the same over a better dual tree, the homotopies in snowflake metrics, in this order, until one has
+/// no flip and no wrong cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
 ///
 /// `start`: frames in the gauge of the all-seam cut.
+///
+/// # Errors
+/// [`LayoutError`]; that of the last route with its elements when all of them leave defects.
 pub fn lay_out(
     mesh: &TriMesh,
     metric: &Metric,
