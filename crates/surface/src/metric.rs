@@ -34,11 +34,11 @@ impl Metric {
     /// area gets a height of `1e-14` times its longest side, an edge without length is given `1e-14` of
     /// the mean; see [`Metric::snowflake`] for solving such meshes.
     pub fn from_positions(mesh: &TriMesh, positions: &[[f64; 3]]) -> Self {
-        let extent = positions
-            .iter()
-            .flatten()
+        let extent = mesh
+            .halfedges()
+            .flat_map(|h| positions[mesh.origin(h).at()])
             .fold(0.0f64, |m, x| m.max(x.abs()))
-            .clamp(f64::MIN_POSITIVE, f64::MAX);
+            .min(f64::MAX);
         let scale = if extent > f64::MIN_POSITIVE {
             power_of_two_near(1.0 / (extent * 0.5).max(f64::MIN_POSITIVE))
         } else {

@@ -11,7 +11,7 @@ use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
-use seamstress_surface::{Component, Face, Metric, TriMesh, components};
+use seamstress_surface::{Component, Face, Metric, TriMesh, Vertex, components};
 
 /// Settings of the direct method.
 #[derive(Debug, Clone, Copy)]
@@ -139,8 +139,12 @@ pub fn make_map(
     if expected != found {
         return Err(MapError::PositionCount { expected, found });
     }
-    if let Some(v) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        return Err(MapError::NonFinitePosition { vertex: v as u32 });
+    // Vertices without a face may lie anywhere.
+    let strange = |v: &Vertex| {
+        mesh.outgoing(*v).next().is_some() && !positions[v.at()].iter().all(|x| x.is_finite())
+    };
+    if let Some(Vertex(vertex)) = mesh.vertices().find(strange) {
+        return Err(MapError::NonFinitePosition { vertex });
     }
     let pieces = components::components(mesh).unwrap_or_default();
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
