@@ -9,7 +9,6 @@ use crate::layout::isometric::unfold;
 use crate::progress::Watch;
 use num_complex::Complex64;
 use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
-use std::cmp::Ordering;
 
 /// How the size of a rounding is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -181,11 +180,12 @@ fn choose(
                 seam,
                 integer: integer as i32,
             };
-            let best = option(r.floor()).min(option(r.ceil()));
+            let (low, high) = (option(r.floor()), option(r.ceil()));
+            let best = if high.key() < low.key() { high } else { low };
             (best.cost <= threshold).then_some(best)
         })
         .collect();
-    candidates.sort_unstable();
+    candidates.sort_unstable_by_key(Candidate::key);
     let mut used = VertexData::filled(mesh.n_vertices(), false);
     candidates.retain(|candidate| {
         if candidate.turn <= LARGE_TURN {
@@ -201,7 +201,7 @@ fn choose(
     candidates.into_iter().map(|c| (c.seam, c.integer)).collect()
 }
 
-/// A rounding, ordered by cost, then by how little it turns, then by seam. Costs and turns that differ by
+/// A rounding; its key orders by cost, then by how little it turns, then by seam. Costs and turns that differ by
 /// rounding errors only count as equal: these must not decide.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
@@ -217,23 +217,3 @@ impl Candidate {
         (coarse(self.cost), coarse(self.turn), self.seam, self.integer)
     }
 }
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key().cmp(&other.key())
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Candidate {}
