@@ -1,6 +1,8 @@
 //! Spanning trees of the faces: which edges a layout crosses, and so which become seams.
 
-use seamstress_surface::{Face, FaceData, Halfedge, HalfedgeData, TriMesh};
+use seamstress_surface::{
+    Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData,
+};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, VecDeque};
 
@@ -77,6 +79,14 @@ impl DualTree {
         }
         (tree.order.len() == mesh.n_faces()).then_some(tree)
     }
+}
+
+/// How curved the flatter end of a half-edge is, radians; the boundary counts as flat. Trees that cross
+/// the edges of small weight leave the seams to curved vertices.
+pub fn curvature_weight(mesh: &TriMesh, metric: &Metric) -> impl Fn(Halfedge) -> f64 {
+    let bend = |(v, k): (Vertex, &f64)| if mesh.is_boundary(v) { 0.0 } else { k.abs() };
+    let bend: VertexData<f64> = metric.curvature(mesh).enumerate().map(bend).collect();
+    move |h| bend[mesh.origin(h)].min(bend[mesh.tip(h)])
 }
 
 /// Heap entry: the lightest comes out first, then the smallest half-edge.

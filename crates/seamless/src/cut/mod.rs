@@ -5,7 +5,7 @@ mod dual_tree;
 mod steiner;
 
 pub use chains::{Chain, SeamGraph};
-pub use dual_tree::DualTree;
+pub use dual_tree::{DualTree, curvature_weight};
 pub(crate) use steiner::Ordered;
 pub use steiner::connect_cones;
 

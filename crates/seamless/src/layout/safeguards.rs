@@ -5,7 +5,7 @@ use super::exact::{Defects, ExactLayout};
 use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
-use crate::cut::DualTree;
+use crate::cut::{DualTree, curvature_weight};
 use crate::map::Violations;
 use crate::progress::{Cancelled, Watch};
 use crate::rounding::MatchedCut;
@@ -286,7 +286,7 @@ pub fn way_back(
 /// The same matchings over a dual tree that crosses few edges where they differ from the isometric
 /// rotations, lifted so that the differences stay what they are.
 pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedCut {
-    let curvature = metric.curvature(mesh);
+    let curvature = curvature_weight(mesh, metric);
     let mut transport = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
     let mut isometric = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
     for ((&h, &r), &r0) in matched.cut.seams.iter().zip(&matched.matching).zip(&matched.isometric) {
@@ -295,12 +295,7 @@ pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedC
         (transport[h], transport[t]) = (d, d);
         (isometric[h], isometric[t]) = (r0, -r0);
     }
-    let flat = |v| {
-        if mesh.is_boundary(v) { 0.0 } else { f64::abs(curvature[v]) }
-    };
-    let tree = DualTree::lightest(mesh, |h| {
-        1e3 * (transport[h] - 0.5).max(0.0) + flat(mesh.origin(h)).min(flat(mesh.tip(h)))
-    });
+    let tree = DualTree::lightest(mesh, |h| 1e3 * (transport[h] - 0.5).max(0.0) + curvature(h));
     let full = matched.matching_per_halfedge(mesh);
     let (regauged, _) = super::space::regauge(mesh, &tree, &full);
     let mut other = MatchedCut::new(mesh, metric, tree);

@@ -3,13 +3,13 @@
 use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::{ComponentStats, MapOptions, StageStats};
-use crate::cut::DualTree;
+use crate::cut::{DualTree, curvature_weight};
 use crate::layout::safeguards::{Laid, LayoutError, lay_out, way_back};
 use crate::map::{SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
 use crate::rounding::{MatchedCut, repair, round};
 use num_complex::Complex64;
-use seamstress_surface::{Component, Halfedge, Metric, TriMesh, Vertex};
+use seamstress_surface::{Component, Halfedge, Metric, TriMesh};
 use std::time::Instant;
 
 /// Exponents of the metrics to solve in: the mesh's own, then snowflakes for meshes whose triangles are
@@ -49,7 +49,8 @@ fn solve(
 
     watch.enter(Stage::Cut)?;
     let metric = if exponent < 1.0 { plain.snowflake(mesh, exponent) } else { plain.clone() };
-    let mut matched = MatchedCut::new(mesh, &metric, curvature_tree(mesh, &metric));
+    let tree = DualTree::lightest(mesh, curvature_weight(mesh, &metric));
+    let mut matched = MatchedCut::new(mesh, &metric, tree);
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
@@ -109,13 +110,6 @@ fn corner_uvs(mesh: &TriMesh, plain: &Metric, laid: &Laid) -> Vec<[f64; 2]> {
     let corner = Complex64::new(low(|z| z.re), low(|z| z.im));
     let uv = |h: Halfedge| (z[laid.layout.cut.wedge[h] as usize] - corner) * plain.unit;
     mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect()
-}
-
-/// The dual tree that crosses flat edges first, so that seams run through curved vertices.
-fn curvature_tree(mesh: &TriMesh, metric: &Metric) -> DualTree {
-    let curvature = metric.curvature(mesh);
-    let bend = |v: Vertex| if mesh.is_boundary(v) { 0.0 } else { curvature[v].abs() };
-    DualTree::lightest(mesh, |h: Halfedge| bend(mesh.origin(h)).min(bend(mesh.tip(h))))
 }
 
 /// Seconds and iterations by stage.
