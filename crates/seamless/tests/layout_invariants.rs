@@ -20,10 +20,12 @@ use seamstress::layout::space::{
 use seamstress::layout::triangle::{Triangle, largest_step, triangles};
 use seamstress::quarter::{rotation, turn};
 use seamstress::rounding::{MatchedCut, RoundingOptions, repair, round};
+use seamstress::{MapOptions, make_map};
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_testkit as kit;
 use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
 
 fn shapes() -> Vec<TriangleSoup> {
     let mut shapes = vec![
@@ -316,5 +318,30 @@ fn frames_turn_with_the_layout_and_the_energy_does_not() {
         }
         let mirrored: Vec<_> = z.iter().map(|z| z.conj()).collect();
         assert!(triangles.iter().all(|t| t.jacobian(&mirrored).singular_values().1 < 0.0));
+    }
+}
+
+#[test]
+fn a_map_is_its_own_exact_layout() {
+    for soup in shapes() {
+        let (mesh, metric) = surface(&soup);
+        let options = MapOptions::default();
+        let solution =
+            make_map(&mesh, &soup.positions, &options, &mut |_| ControlFlow::Continue(())).unwrap();
+        let (layout, y) = ExactLayout::from_map(&mesh, &metric, &solution.map).unwrap();
+        assert!(layout.defects(&mesh, &y).none());
+        let z = layout.expand(&y);
+        for f in mesh.faces() {
+            let corner = |h: Halfedge| {
+                let [u, v] = solution.map.corner_uvs()[h.at()];
+                Complex64::new(u, v) / metric.unit
+            };
+            let [a, b, c] = f.halfedges();
+            for (p, q) in [(a, b), (b, c)] {
+                let given = turn(corner(q) - corner(p), layout.gauge[f]);
+                let here = z[layout.cut.wedge[q] as usize] - z[layout.cut.wedge[p] as usize];
+                assert!((given - here).norm() < 1e-9);
+            }
+        }
     }
 }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use seamstress_numerics::NotPositiveDefinite;
 
 const SHIFT: f64 = 1e-10;
+const REFINEMENTS: usize = 2;
 
 /// Rotation of a triangle's Jacobian (polar decomposition): the *local step*, eq. (4) of the seed.
 pub fn frame(triangle: &Triangle, z: &[Complex64]) -> Complex64 {
@@ -46,6 +47,23 @@ impl<'p> Poisson<'p> {
         }
         let mut y = self.problem.space().pull_back(&b);
         self.problem.solve(&mut y);
+        y
+    }
+
+    /// Like [`Self::solve`], refined until targets that some layout has are met to rounding: the shift of
+    /// the factored form is felt on large meshes otherwise.
+    pub fn follow(&mut self, targets: &[[Complex64; 2]]) -> Vec<f64> {
+        let mut y = self.solve(targets);
+        for _ in 0..REFINEMENTS {
+            let z = self.problem.space().expand(&y);
+            let left = |(t, a): (&Triangle, &[Complex64; 2])| {
+                let now = t.axes(t.corners(&z));
+                [a[0] - now[0], a[1] - now[1]]
+            };
+            let left: Vec<_> = self.problem.triangles().iter().zip(targets).map(left).collect();
+            let correction = self.solve(&left);
+            y.iter_mut().zip(correction).for_each(|(y, d)| *y += d);
+        }
         y
     }
 

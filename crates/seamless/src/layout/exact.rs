@@ -8,12 +8,15 @@ use super::problem::LayoutProblem;
 use super::space::{regauge, seamless_space, turned_vertices};
 use super::triangle::triangles;
 use crate::cut::{Cut, SeamGraph, connect_cones};
+use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::{turn, within};
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
-use seamstress_surface::{Face, FaceData, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_surface::{
+    Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData,
+};
 use std::f64::consts::FRAC_PI_2;
 
 /// A cut through the cones, its matchings, and the layouts that close up to them.
@@ -73,10 +76,53 @@ impl ExactLayout {
         metric: &Metric,
         matched: &MatchedCut,
     ) -> Result<Self, NotPositiveDefinite> {
-        let full = matched.matching_per_halfedge(mesh);
-        let is_cone = turned_vertices(mesh, &full);
+        let index = matched.cone_indices(mesh, metric);
+        Self::over(mesh, metric, &matched.matching_per_halfedge(mesh), index)
+    }
+
+    /// The exact layouts with the matchings (modulo 4) and cones of a map of a connected mesh, and the
+    /// unknowns of the one nearest to it in the Jacobians.
+    ///
+    /// The map's UVs are in mesh units. Its own gauge is that of the all-seam cut here.
+    ///
+    /// # Errors
+    /// When a system cannot be set up or factored.
+    pub fn from_map(
+        mesh: &TriMesh,
+        metric: &Metric,
+        map: &SeamlessMap,
+    ) -> Result<(Self, Vec<f64>), NotPositiveDefinite> {
+        let mut full = HalfedgeData::filled(mesh.n_halfedges(), 0);
+        for seam in map.seams() {
+            full[seam.left] = seam.matching;
+            if let Some(t) = mesh.twin(seam.left) {
+                full[t] = -seam.matching;
+            }
+        }
+        let mut index = VertexData::filled(mesh.n_vertices(), 0);
+        for cone in map.cones() {
+            index[Vertex(cone.vertex)] = cone.index;
+        }
+        let mut layout = Self::over(mesh, metric, &full, index)?;
+        let corner = |h: Halfedge| {
+            let [u, v] = map.corner_uvs()[h.at()];
+            Complex64::new(u, v) / metric.unit
+        };
+        let targets = layout.jacobians(mesh, corner);
+        let y = Poisson::new(&mut layout.problem)?.follow(&targets);
+        Ok((layout, y))
+    }
+
+    /// Over the matching of every half-edge, which counts modulo 4, and the index of every vertex.
+    fn over(
+        mesh: &TriMesh,
+        metric: &Metric,
+        full: &HalfedgeData<i32>,
+        index: VertexData<i32>,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let is_cone = turned_vertices(mesh, full);
         let (cut, tree) = connect_cones(mesh, metric, &is_cone).ok_or(NotPositiveDefinite)?;
-        let (mut matching, gauge) = regauge(mesh, &tree, &full);
+        let (mut matching, gauge) = regauge(mesh, &tree, full);
         for h in mesh.halfedges() {
             // Off the seams the matchings are multiples of four: the same rotation as none.
             matching[h] = if cut.is_seam[h] { matching[h] } else { 0 };
@@ -84,7 +130,6 @@ impl ExactLayout {
         let graph = SeamGraph::new(mesh, &cut, &is_cone);
         let space = seamless_space(mesh, &cut, &graph, &matching);
         let problem = LayoutProblem::new(space, triangles(mesh, metric, &cut), None)?;
-        let index = matched.cone_indices(mesh, metric);
         Ok(Self { cut, matching, gauge, index, problem })
     }
 
@@ -118,7 +163,7 @@ impl ExactLayout {
         all_seams: &Cut,
         z: &[Complex64],
     ) -> Result<Vec<f64>, NotPositiveDefinite> {
-        let targets = self.jacobians(mesh, all_seams, z);
+        let targets = self.jacobians(mesh, |h| z[all_seams.wedge[h] as usize]);
         Ok(Poisson::new(&mut self.problem)?.solve(&targets))
     }
 
@@ -135,20 +180,15 @@ impl ExactLayout {
         Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations))
     }
 
-    /// Images of the axes under a layout of another cut, turned into this gauge.
-    fn jacobians(&self, mesh: &TriMesh, other: &Cut, z: &[Complex64]) -> Vec<[Complex64; 2]> {
-        let gradients = self.problem.triangles();
+    /// Images of the axes under a map given by its corners, turned into this gauge.
+    fn jacobians(
+        &self,
+        mesh: &TriMesh,
+        corner: impl Fn(Halfedge) -> Complex64,
+    ) -> Vec<[Complex64; 2]> {
         mesh.faces()
-            .map(|f| {
-                let mut axes = [Complex64::ZERO; 2];
-                for (k, h) in f.halfedges().into_iter().enumerate() {
-                    let corner = turn(z[other.wedge[h] as usize], self.gauge[f]);
-                    let g = gradients[f.at()].gradients[k];
-                    axes[0] += corner * g[0];
-                    axes[1] += corner * g[1];
-                }
-                axes
-            })
+            .zip(self.problem.triangles())
+            .map(|(f, t)| t.axes(f.halfedges().map(|h| turn(corner(h), self.gauge[f]))))
             .collect()
     }
 

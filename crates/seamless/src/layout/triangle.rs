@@ -22,8 +22,21 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    fn corners(&self, z: &[Complex64]) -> [Complex64; 3] {
+    /// Positions of the corners.
+    #[inline]
+    pub fn corners(&self, z: &[Complex64]) -> [Complex64; 3] {
         self.wedges.map(|w| z[w as usize])
+    }
+
+    /// Images of the two axes under the linear map with these corners.
+    #[inline]
+    pub fn axes(&self, corners: [Complex64; 3]) -> [Complex64; 2] {
+        let mut axes = [Complex64::ZERO; 2];
+        for (z, g) in corners.into_iter().zip(self.gradients) {
+            axes[0] += z * g[0];
+            axes[1] += z * g[1];
+        }
+        axes
     }
 
     /// The Jacobian of the layout on this triangle.
