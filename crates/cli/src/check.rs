@@ -3,6 +3,7 @@
 use crate::args::CheckArgs;
 use crate::faults::{fault_json, listing, violation_json};
 use crate::input::LoadedMesh;
+use crate::map_file::MapFile;
 use crate::outcome::{Failure, Status};
 use crate::report::{self, VERSION};
 use crate::summary;
@@ -10,7 +11,6 @@ use crate::text::{self, counted, figure, row};
 use seamstress::map::compare_source;
 use seamstress::quality::{Distortion, distortion};
 use seamstress::{SeamlessMap, Tolerance, Violation, Violations};
-use seamstress_io::{PolygonMesh, read_mesh};
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{Metric, TriMesh};
 use serde_json::{Value, json};
@@ -87,9 +87,7 @@ fn json_base(args: &CheckArgs, mesh: &LoadedMesh) -> Value {
 }
 
 fn check_map(args: &CheckArgs, mesh: &LoadedMesh, path: &Path) -> Result<Status, Failure> {
-    mesh.require_mesh()?;
-    let connectivity = TriMesh::from_faces(mesh.soup.positions.len(), &mesh.soup.faces)
-        .map_err(|error| bad_map(&mesh.path, &error.to_string()))?;
+    let connectivity = mesh.connect()?;
     let map = MapFile::read(path)?;
     let verdict = judge(&mesh.soup, &connectivity, map, &args.tolerance());
     let is_certified = verdict.certified.is_ok();
@@ -104,47 +102,6 @@ fn check_map(args: &CheckArgs, mesh: &LoadedMesh, path: &Path) -> Result<Status,
         text::print(&rows.join("\n"))?;
     }
     Ok(if is_certified { Status::Done } else { Status::BadInput })
-}
-
-/// A map as read: triangles with a UV per corner.
-struct MapFile {
-    soup: TriangleSoup,
-    corner_uvs: Vec<[f64; 2]>,
-}
-
-impl MapFile {
-    fn read(path: &Path) -> Result<Self, Failure> {
-        let read = read_mesh(path)?;
-        let corner_uvs = corner_uvs(&read).ok_or_else(|| {
-            let mut text = String::from(
-                "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
-            );
-            for note in &read.notes {
-                text += &format!("\nnote: {note}");
-            }
-            bad_map(path, &text)
-        })?;
-        let faces: Option<Vec<[u32; 3]>> =
-            read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
-        let Some(faces) = faces else {
-            let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
-            let text = format!(
-                "face {} is not a triangle; the faces of a map are the triangles of its mesh",
-                larger.unwrap_or_default()
-            );
-            return Err(bad_map(path, &text));
-        };
-        Ok(Self { soup: TriangleSoup { positions: read.positions, faces }, corner_uvs })
-    }
-}
-
-fn bad_map(path: &Path, text: &str) -> Failure {
-    Failure::BadMap { file: path.to_owned(), text: text.to_owned() }
-}
-
-fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
-    let uvs = read.corner_uvs.as_ref()?;
-    uvs.corners.iter().map(|&corner| uvs.coordinates.get(corner as usize).copied()).collect()
 }
 
 /// What is to say about a map.

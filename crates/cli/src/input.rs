@@ -2,14 +2,19 @@
 
 use crate::faults::listing;
 use crate::outcome::Failure;
-use crate::text::counted;
+use crate::text::{self, counted};
 use seamstress_io::{Format, PolygonMesh, read_mesh};
+use seamstress_surface::TriMesh;
 use seamstress_surface::soup::{
     self, Facts, Fault, Severity, TriangleSoup, Triangulation, TriangulationNotes,
 };
 use std::mem::discriminant;
 use std::path::{Path, PathBuf};
 
+/// Warnings of each kind told; the report has them all.
+const SHOWN_WARNINGS: usize = 5;
+/// Repairs told; the report has them all.
+const SHOWN_REPAIRS: usize = 20;
 /// Faults of each kind shown when a mesh is refused.
 const SHOWN_WHEN_REFUSED: usize = 5;
 
@@ -123,8 +128,38 @@ impl LoadedMesh {
         self.faults.iter().filter(is_warning)
     }
 
+    /// Notes, warnings and repairs, on standard error.
+    pub(crate) fn tell_findings(&self) {
+        for note in &self.notes {
+            text::tell(&format!("note: {note}"));
+        }
+        for repair in self.repairs.iter().take(SHOWN_REPAIRS) {
+            text::tell(&format!("repair: {repair}"));
+        }
+        if self.repairs.len() > SHOWN_REPAIRS {
+            let more = self.repairs.len() - SHOWN_REPAIRS;
+            text::tell(&format!("repair: and {more} more"));
+        }
+        if !self.repairs.is_empty() {
+            text::tell("note: the map is of the repaired mesh");
+        }
+        for warning in listing(self.warnings(), SHOWN_WARNINGS) {
+            text::tell(&format!("warning: {warning}"));
+        }
+    }
+
+    /// The connectivity of what is a mesh.
+    ///
+    /// # Errors
+    /// If it is none, with its faults.
+    pub(crate) fn connect(&self) -> Result<TriMesh, Failure> {
+        self.require_mesh()?;
+        TriMesh::from_faces(self.soup.positions.len(), &self.soup.faces)
+            .map_err(|error| Failure::BadMesh { file: self.path.clone(), text: error.to_string() })
+    }
+
     /// Refuses what is not a mesh, listing its faults.
-    pub(crate) fn require_mesh(&self) -> Result<(), Failure> {
+    fn require_mesh(&self) -> Result<(), Failure> {
         let count = self.errors().count();
         if count == 0 {
             return Ok(());

@@ -1,29 +1,18 @@
 //! `seamstress map`.
 
 use crate::args::MapArgs;
-use crate::faults::listing;
 use crate::input::LoadedMesh;
+use crate::job::{Job, Worker};
 use crate::outcome::{Failure, Status};
-use crate::output::{Kind, Plan};
+use crate::output::{Kind, Plan, Target};
 use crate::pictures;
-use crate::progress::Bars;
 use crate::report::{self, Cost, MapReport, VERSION};
-use crate::stop::{Abandoned, Stop, supervise};
 use crate::summary;
-use crate::system;
 use crate::text::{self, counted, figure, row};
 use seamstress::{MapError, MapSolution, make_map};
 use seamstress_io::{MapObj, write_map_obj, write_singularities};
-use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
-use std::ops::ControlFlow;
-use std::path::Path;
-
-/// Warnings of each kind shown; the report has them all.
-const SHOWN_WARNINGS: usize = 5;
-/// Repairs shown; the report has them all.
-const SHOWN_REPAIRS: usize = 20;
 
 /// The work done, and nothing written yet.
 struct Product {
@@ -34,114 +23,61 @@ struct Product {
 
 /// Runs the command.
 pub(crate) fn run(args: &MapArgs) -> Result<Status, Failure> {
-    let stop = Stop::new(args.time_limit);
-    set_threads(args.threads)?;
-    let plan = Plan::new(args)?;
-    let bars = Bars::new(!args.quiet);
-    let worker = Worker { args: args.clone(), stop: stop.clone(), bars: bars.clone() };
-    let made = supervise(&stop, move || worker.make());
-    bars.clear();
-    let product = made.unwrap_or_else(|abandoned| Err(abandoned_failure(&args.mesh, abandoned)))?;
-    finish(args, &stop, &plan, &product)?;
+    let job = Job::new(&args.run, &args.mesh)?;
+    let plan = plan(args)?;
+    let owned = args.clone();
+    let product = job.run(move |worker| make(&owned, worker))?;
+    finish(args, &job, &plan, &product)?;
     Ok(Status::Done)
 }
 
-fn set_threads(threads: Option<u32>) -> Result<(), Failure> {
-    let Some(threads) = threads else {
-        return Ok(());
-    };
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads as usize)
-        .build_global()
-        .map_err(|error| Failure::Usage(format!("cannot start {threads} threads: {error}")))
-}
-
-fn abandoned_failure(file: &Path, abandoned: Abandoned) -> Failure {
-    let file = file.to_owned();
-    match abandoned {
-        Abandoned::Stopped(reason) => Failure::Stopped { file, reason },
-        Abandoned::Panicked => Failure::Internal { file, text: "the computation broke off".into() },
+/// The outputs; the map last, since it says that the rest is there.
+fn plan(args: &MapArgs) -> Result<Plan, Failure> {
+    let mut targets = Vec::new();
+    if let Some(folder) = &args.pictures {
+        targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
     }
+    targets.extend(args.cones.iter().map(|path| Target::new(Kind::Cones, path)));
+    targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
+    targets.push(Target::new(Kind::Map, &args.output));
+    Plan::new(&[&args.mesh], args.pictures.as_deref(), targets)
 }
 
 /// The part of the command that may take long.
-struct Worker {
-    args: MapArgs,
-    stop: Stop,
-    bars: Bars,
-}
-
-impl Worker {
-    fn make(mut self) -> Result<Product, Failure> {
-        let mesh = LoadedMesh::load(&self.args.mesh, self.args.repair)?;
-        if !self.args.quiet {
-            tell_findings(&mesh);
+fn make(args: &MapArgs, mut worker: Worker) -> Result<Product, Failure> {
+    let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
+    if !args.run.quiet {
+        mesh.tell_findings();
+    }
+    let connectivity = mesh.connect()?;
+    let made = make_map(&connectivity, &mesh.soup.positions, &args.options(), &mut |progress| {
+        worker.observe(progress)
+    });
+    let solution = made.map_err(|cause| {
+        let file = mesh.path.clone();
+        match (cause, worker.stop.reason()) {
+            (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+            (cause, _) => Failure::NoMap { file, cause },
         }
-        mesh.require_mesh()?;
-        let connectivity =
-            TriMesh::from_faces(mesh.soup.positions.len(), &mesh.soup.faces).map_err(|error| {
-                Failure::BadMesh { file: mesh.path.clone(), text: error.to_string() }
-            })?;
-        let solution = self.solve(&mesh, &connectivity)?;
-        self.stop.lift_limit();
-        let pictures = match &self.args.pictures {
-            Some(_) => Some(pictures::draw(&mesh.soup, &solution.map)),
-            None => None,
-        };
-        let pictures = pictures
-            .transpose()
-            .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-        Ok(Product { mesh, solution, pictures })
-    }
-
-    fn solve(&mut self, mesh: &LoadedMesh, connectivity: &TriMesh) -> Result<MapSolution, Failure> {
-        let (stop, bars) = (&self.stop, &mut self.bars);
-        let mut observe = |progress| {
-            bars.show(progress);
-            match stop.reason() {
-                Some(_) => ControlFlow::Break(()),
-                None => ControlFlow::Continue(()),
-            }
-        };
-        let positions = &mesh.soup.positions;
-        let made = make_map(connectivity, positions, &self.args.options(), &mut observe);
-        made.map_err(|cause| {
-            let file = mesh.path.clone();
-            match (cause, stop.reason()) {
-                (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
-                (cause, _) => Failure::NoMap { file, cause },
-            }
-        })
-    }
-}
-
-/// Notes, warnings and repairs, on standard error.
-fn tell_findings(mesh: &LoadedMesh) {
-    for note in &mesh.notes {
-        text::tell(&format!("note: {note}"));
-    }
-    for repair in mesh.repairs.iter().take(SHOWN_REPAIRS) {
-        text::tell(&format!("repair: {repair}"));
-    }
-    if mesh.repairs.len() > SHOWN_REPAIRS {
-        let more = mesh.repairs.len() - SHOWN_REPAIRS;
-        text::tell(&format!("repair: and {more} more"));
-    }
-    if !mesh.repairs.is_empty() {
-        text::tell("note: the map is of the repaired mesh");
-    }
-    for warning in listing(mesh.warnings(), SHOWN_WARNINGS) {
-        text::tell(&format!("warning: {warning}"));
-    }
+    })?;
+    worker.stop.lift_limit();
+    let pictures = match &args.pictures {
+        Some(_) => Some(pictures::draw(&mesh.soup, &solution.map)),
+        None => None,
+    };
+    let pictures = pictures
+        .transpose()
+        .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
+    Ok(Product { mesh, solution, pictures })
 }
 
 /// Writes everything, puts it in place and prints the summary.
-fn finish(args: &MapArgs, stop: &Stop, plan: &Plan, product: &Product) -> Result<(), Failure> {
+fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(), Failure> {
     let mut batch = plan.begin()?;
     let mut report = String::new();
-    let cost = cost_so_far(stop);
+    let cost = job.cost();
     let mut pictures = product.pictures.iter().flatten();
-    if args.json || args.report.is_some() {
+    if args.run.json || args.report.is_some() {
         report = report_text(args, plan, product, cost);
     }
     for target in &plan.targets {
@@ -152,26 +88,14 @@ fn finish(args: &MapArgs, stop: &Stop, plan: &Plan, product: &Product) -> Result
             Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),
         })?;
     }
-    if let Some(reason) = stop.reason() {
-        let file = args.mesh.clone();
-        return Err(Failure::Stopped { file, reason });
-    }
+    job.still_wanted()?;
     batch.commit()?;
-    if args.json {
+    if args.run.json {
         text::print(&report)?;
-    } else if !args.quiet {
+    } else if !args.run.quiet {
         text::print(&summary_text(plan, product, &cost))?;
     }
     Ok(())
-}
-
-fn cost_so_far(stop: &Stop) -> Cost {
-    Cost {
-        wall_seconds: stop.elapsed().as_secs_f64(),
-        cpu_seconds: system::cpu_seconds(),
-        peak_memory_bytes: system::peak_memory(),
-        threads: rayon::current_num_threads(),
-    }
 }
 
 fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> String {
@@ -184,8 +108,8 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
             "cone_bias": args.cone_bias,
             "cone_price": args.cone_price,
             "rounding": args.options().rounding.strategy,
-            "time_limit": args.time_limit.map(|limit| limit.as_secs_f64()),
-            "threads": args.threads,
+            "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
+            "threads": args.run.threads,
         }),
         input: report::input_json(&product.mesh),
         components: &solution.components,

@@ -1,8 +1,6 @@
 //! Output files: checked before the work, written after it, put in place together.
 
-use crate::args::MapArgs;
 use crate::outcome::Failure;
-use crate::pictures;
 use seamstress_io::{AtomicFile, Format};
 use std::fs;
 use std::io;
@@ -26,6 +24,25 @@ pub(crate) struct Target {
     pub(crate) path: PathBuf,
 }
 
+impl Target {
+    pub(crate) fn new(kind: Kind, path: &Path) -> Self {
+        Self { kind, path: path.to_owned() }
+    }
+
+    /// Maps are OBJ files; the name must not promise another format.
+    fn refuse_other_format(&self) -> Result<(), Failure> {
+        match Format::from_path(&self.path) {
+            Some(format) if self.kind == Kind::Map && format != Format::Obj => {
+                Err(Failure::Usage(format!(
+                    "{}: maps are written as OBJ, not {format}; give the output a name in .obj",
+                    self.path.display()
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 fn as_text<S: serde::Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(&path.to_string_lossy())
 }
@@ -39,43 +56,33 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Plans the outputs of a run.
+    /// Plans the outputs of a run: files in the order they are put in place, and the folder that some
+    /// of them are in.
     ///
     /// # Errors
-    /// If an output would replace the input or another output, or cannot be written.
-    pub(crate) fn new(args: &MapArgs) -> Result<Self, Failure> {
-        let mut targets = Vec::new();
-        let mut add = |kind, path: &Path| {
-            let path = path.to_owned();
-            targets.push(Target { kind, path });
-        };
-        if let Some(folder) = &args.pictures {
-            for name in pictures::NAMES {
-                add(Kind::Picture, &folder.join(name));
-            }
+    /// If an output would replace an input or another output, or cannot be written.
+    pub(crate) fn new(
+        inputs: &[&Path],
+        folder: Option<&Path>,
+        targets: Vec<Target>,
+    ) -> Result<Self, Failure> {
+        let plan = Self { targets, folder: folder.map(Path::to_owned) };
+        for target in &plan.targets {
+            target.refuse_other_format()?;
         }
-        if let Some(path) = &args.cones {
-            add(Kind::Cones, path);
-        }
-        if let Some(path) = &args.report {
-            add(Kind::Report, path);
-        }
-        add(Kind::Map, &args.output);
-        let plan = Self { targets, folder: args.pictures.clone() };
-        refuse_other_formats(&args.output)?;
-        plan.refuse_clashes(&args.mesh)?;
+        plan.refuse_clashes(inputs)?;
         plan.probe()?;
         Ok(plan)
     }
 
-    fn refuse_clashes(&self, input: &Path) -> Result<(), Failure> {
-        let input_id = identity(input);
+    fn refuse_clashes(&self, inputs: &[&Path]) -> Result<(), Failure> {
+        let input_ids: Vec<PathBuf> = inputs.iter().map(|input| identity(input)).collect();
         let mut seen: Vec<PathBuf> = self.folder.iter().map(|folder| identity(folder)).collect();
         for Target { path, .. } in &self.targets {
             let id = identity(path);
             let shown = path.display();
-            if id == input_id {
-                let text = format!("{shown} is the input; write the output to another file");
+            if input_ids.contains(&id) {
+                let text = format!("{shown} is an input; write the output to another file");
                 return Err(Failure::Usage(text));
             }
             if seen.contains(&id) {
@@ -112,16 +119,6 @@ impl Plan {
             batch.make(folder)?;
         }
         Ok(batch)
-    }
-}
-
-fn refuse_other_formats(output: &Path) -> Result<(), Failure> {
-    match Format::from_path(output) {
-        Some(format) if format != Format::Obj => Err(Failure::Usage(format!(
-            "{}: maps are written as OBJ, not {format}; give the output a name in .obj",
-            output.display()
-        ))),
-        _ => Ok(()),
     }
 }
 

@@ -1,0 +1,61 @@
+//! Arguments of `check`.
+
+use super::{EXIT_CODES, not_negative};
+use seamstress::Tolerance;
+use std::path::PathBuf;
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  seamstress check bunny.ply
+  seamstress check bunny.ply bunny.obj
+  seamstress check bunny.ply other_program.obj --tolerance 1e-5
+  seamstress check scan.stl --json | jq '.faults[].message'";
+
+/// List the faults of a mesh, or certify a map
+///
+/// With a mesh alone: its size, its topology, and everything that keeps it from being mapped. With a
+/// map as well: whether the map has the mesh's vertices and faces and is seamless, and its distortion;
+/// or else everything that is wrong with it. Vertices, faces and components are counted from 0.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
+pub(crate) struct CheckArgs {
+    /// The mesh: OBJ, OFF, PLY or STL
+    pub(crate) mesh: PathBuf,
+
+    /// A map of the mesh: an OBJ file with a texture coordinate at every corner
+    #[arg(value_name = "MAP.obj")]
+    pub(crate) map: Option<PathBuf>,
+
+    /// Repair the mesh first, as `map --repair` does
+    #[arg(long)]
+    pub(crate) repair: bool,
+
+    /// How far the sides of a seam may be apart.
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        requires = "map",
+        help = format!(
+            "How far the sides of a seam may be apart, in mean edge lengths of the map; foreign \
+             maps of few digits need more [default: {:e}]",
+            Tolerance::default().seam
+        )
+    )]
+    pub(crate) tolerance: Option<f64>,
+
+    /// Print everything as JSON on standard output, with all faults
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl CheckArgs {
+    /// How exact a map must be.
+    pub(crate) fn tolerance(&self) -> Tolerance {
+        let mut tolerance = Tolerance::default();
+        if let Some(seam) = self.tolerance {
+            tolerance.seam = seam;
+        }
+        tolerance
+    }
+}

@@ -1,0 +1,99 @@
+//! Arguments of `map`.
+
+use super::{EXIT_CODES, RunArgs, not_negative};
+use seamstress::MapOptions;
+use seamstress::rounding::{RoundingOptions, RoundingStrategy};
+use std::path::PathBuf;
+
+const MAP_EXAMPLES: &str = "\
+Examples:
+  seamstress map bunny.ply -o bunny.obj
+  seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
+  seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress map part.off -o part.obj --json | jq .distortion.tau";
+
+/// Make a seamless map of a mesh
+///
+/// Reads a mesh, computes a seamless map of low distortion, certifies it and writes it as an OBJ file
+/// with a texture coordinate per corner. Vertices and faces stay as they are and in their order;
+/// polygons are split into triangles, and the corners of an STL file are welded where they coincide.
+/// Files appear only when everything has succeeded.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = format!("{MAP_EXAMPLES}\n\n{EXIT_CODES}"))]
+pub(crate) struct MapArgs {
+    /// The mesh to map: OBJ, OFF, PLY or STL
+    pub(crate) mesh: PathBuf,
+
+    /// Write the map to this OBJ file, replacing an existing one
+    #[arg(short, long, value_name = "MAP.obj")]
+    pub(crate) output: PathBuf,
+
+    /// Write all figures of the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+
+    /// Write front.png, back.png and layout.png to this folder, made if it does not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) pictures: Option<PathBuf>,
+
+    /// Write the cones to this file: vertex (counted from 0) and index in quarters of a turn
+    #[arg(long, value_name = "FILE.sing")]
+    pub(crate) cones: Option<PathBuf>,
+
+    /// Repair what can be repaired without moving a vertex, and map the repaired mesh
+    ///
+    /// Drops degenerate and repeated faces and unused vertices, turns faces over that disagree with
+    /// their neighbours, and splits vertices where surfaces only touch. Every repair is listed.
+    #[arg(long)]
+    pub(crate) repair: bool,
+
+    /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = RoundingOptions::default().cone_bias
+    )]
+    pub(crate) cone_bias: f64,
+
+    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
+    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = MapOptions::default().cone_price
+    )]
+    pub(crate) cone_price: f64,
+
+    /// How the rounding of a seam is judged: by its angle and the cones it makes, or by its effect
+    /// estimated on a small patch as well
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
+    pub(crate) rounding: Rounding,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
+
+/// Names of the rounding strategies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Rounding {
+    /// Angle and cones
+    ConeBias,
+    /// Effect on a small patch, and cones
+    LocalEstimation,
+}
+
+impl MapArgs {
+    /// The settings of the method.
+    pub(crate) fn options(&self) -> MapOptions {
+        let mut options = MapOptions::default();
+        options.rounding.cone_bias = self.cone_bias;
+        options.rounding.strategy = match self.rounding {
+            Rounding::ConeBias => RoundingStrategy::ConeBias,
+            Rounding::LocalEstimation => RoundingStrategy::LocalEstimation,
+        };
+        options.cone_price = self.cone_price;
+        options
+    }
+}

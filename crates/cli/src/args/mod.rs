@@ -1,0 +1,107 @@
+//! The command line.
+
+mod check;
+mod map;
+
+pub(crate) use check::CheckArgs;
+pub(crate) use map::MapArgs;
+
+use clap::{Parser, Subcommand, value_parser};
+use std::time::Duration;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done; any map written or checked is certified
+  1  the input is at fault: unreadable, not a mesh, or not a seamless map
+  2  wrong usage: unknown option, or an output that cannot be written
+  3  no certified map could be made; nothing is written
+  4  stopped by the time limit or by Ctrl-C; nothing is written";
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress map bunny.ply -o bunny.obj
+  seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
+  seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress check bunny.ply
+  seamstress check bunny.ply bunny.obj";
+
+/// Makes seamless maps of triangle meshes
+///
+/// A seamless map flattens a surface into the plane. The surface is cut along seams, and the two
+/// sides of every seam fit after a turn by a multiple of 90 degrees and a shift. A square grid drawn
+/// in the plane therefore closes up over the whole surface, except at a few points called cones. Quad
+/// meshing and seamless textures start from such a map.
+///
+/// `map` makes a map and certifies it: no triangle is flipped or collapsed, every seam fits, and the
+/// angle at every cone is a multiple of 90 degrees. `check` lists what is wrong with a mesh, or
+/// certifies the map in a file, whatever program wrote it.
+#[derive(Debug, Parser)]
+#[command(
+    name = "seamstress",
+    version,
+    max_term_width = 100,
+    after_help = format!("{EXAMPLES}\n\n{EXIT_CODES}")
+)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Map(MapArgs),
+    Check(CheckArgs),
+}
+
+/// What every command that may take long has.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub(crate) struct RunArgs {
+    /// Give up when the work is not done after this many seconds [default: no limit]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) time_limit: Option<Duration>,
+
+    /// Number of threads; the result does not depend on it [default: all cores]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1024))]
+    pub(crate) threads: Option<u32>,
+
+    /// Print the report as JSON on standard output instead of the summary
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Print no summary, progress, notes or warnings, only errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        _ => Err("expected a number, 0 or larger".into()),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
+    positive
+        .and_then(|x| Duration::try_from_secs_f64(x).ok())
+        .ok_or_else(|| "expected a number of seconds larger than 0".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn seconds_are_positive_and_finite() {
+        assert_eq!(seconds("0.25"), Ok(Duration::from_millis(250)));
+        for text in ["0", "-1", "nan", "inf", "1e300", "soon", ""] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+    }
+}

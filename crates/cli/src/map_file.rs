@@ -1,0 +1,48 @@
+//! Maps from files.
+
+use crate::outcome::Failure;
+use seamstress_io::{PolygonMesh, read_mesh};
+use seamstress_surface::soup::TriangleSoup;
+use std::path::Path;
+
+/// A map as read: triangles with a UV per corner.
+pub(crate) struct MapFile {
+    pub(crate) soup: TriangleSoup,
+    pub(crate) corner_uvs: Vec<[f64; 2]>,
+}
+
+impl MapFile {
+    /// Reads an OBJ file with a texture coordinate at every corner of every triangle.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let read = read_mesh(path)?;
+        let corner_uvs = corner_uvs(&read).ok_or_else(|| {
+            let mut text = String::from(
+                "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
+            );
+            for note in &read.notes {
+                text += &format!("\nnote: {note}");
+            }
+            bad_map(path, &text)
+        })?;
+        let faces: Option<Vec<[u32; 3]>> =
+            read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
+        let Some(faces) = faces else {
+            let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
+            let text = format!(
+                "face {} is not a triangle; the faces of a map are the triangles of its mesh",
+                larger.unwrap_or_default()
+            );
+            return Err(bad_map(path, &text));
+        };
+        Ok(Self { soup: TriangleSoup { positions: read.positions, faces }, corner_uvs })
+    }
+}
+
+fn bad_map(path: &Path, text: &str) -> Failure {
+    Failure::BadMap { file: path.to_owned(), text: text.to_owned() }
+}
+
+fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
+    let uvs = read.corner_uvs.as_ref()?;
+    uvs.corners.iter().map(|&corner| uvs.coordinates.get(corner as usize).copied()).collect()
+}
