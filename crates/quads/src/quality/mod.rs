@@ -1,0 +1,69 @@
+//! Quality of quad meshes, section 2 of the seed: shape, irregular vertices, distance to a source.
+
+mod distance;
+mod shape;
+mod topology;
+
+pub use distance::{Distance, DistanceError, SurfaceDistance, surface_distance};
+pub use shape::{Angles, EdgeLengths};
+pub use topology::Topology;
+
+use crate::QuadMesh;
+use crate::layout::{LayoutError, lay_out_squares};
+use seamstress::quality::{Distortion, distortion};
+use seamstress_surface::Metric;
+
+/// Figures of a polygon mesh, quads above all.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct QuadQuality {
+    /// Counts, and what is irregular.
+    pub topology: Topology,
+    /// Angles at the corners of the polygons.
+    pub angles: Angles,
+    /// Lengths of the edges.
+    pub edge_lengths: EdgeLengths,
+    /// Distortion of the map from the mesh to its layout of unit squares (section 7), in all that is
+    /// invariant to scale; `None` if there is no such layout.
+    pub distortion: Option<Distortion>,
+    /// Why there is no layout.
+    pub no_layout: Option<String>,
+}
+
+/// Measures polygons in space.
+///
+/// Angles, lengths and valences are taken on any polygons; the distortion needs quads only, in an
+/// oriented manifold. Corners must be below the number of positions.
+pub fn measure<'a>(
+    positions: &[[f64; 3]],
+    polygons: impl Iterator<Item = &'a [u32]> + Clone,
+) -> QuadQuality {
+    let (distortion, no_layout) = match layout_distortion(positions, polygons.clone()) {
+        Ok(distortion) => (Some(distortion), None),
+        Err(reason) => (None, Some(reason)),
+    };
+    QuadQuality {
+        topology: Topology::new(positions.len(), polygons.clone()),
+        angles: Angles::new(positions, polygons.clone()),
+        edge_lengths: EdgeLengths::new(positions, polygons),
+        distortion,
+        no_layout,
+    }
+}
+
+fn layout_distortion<'a>(
+    positions: &[[f64; 3]],
+    polygons: impl Iterator<Item = &'a [u32]>,
+) -> Result<Distortion, String> {
+    let quads: Result<Vec<[u32; 4]>, _> = polygons
+        .enumerate()
+        .map(|(i, polygon)| {
+            let corners = polygon.len();
+            <[u32; 4]>::try_from(polygon).map_err(|_| format!("polygon {i} has {corners} corners"))
+        })
+        .collect();
+    let quads = QuadMesh::new(positions.to_vec(), quads?).map_err(|error| error.to_string())?;
+    let layout = lay_out_squares(&quads).map_err(|error: LayoutError| error.to_string())?;
+    let metric = Metric::from_positions(&layout.mesh, positions);
+    Ok(distortion(&layout.mesh, &metric, &layout.corner_uvs))
+}
