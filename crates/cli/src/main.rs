@@ -5,12 +5,15 @@ mod check;
 mod faults;
 mod input;
 mod job;
+mod layout_quads;
 mod map;
 mod map_file;
 mod outcome;
 mod output;
 mod pictures;
 mod progress;
+mod quad_file;
+mod quality;
 mod report;
 mod stop;
 mod summary;
@@ -26,6 +29,8 @@ fn main() -> ExitCode {
     let done = match &args.command {
         Command::Map(args) => map::run(args),
         Command::Check(args) => check::run(args),
+        Command::LayoutQuads(args) => layout_quads::run(args),
+        Command::Quality(args) => quality::run(args),
     };
     match done {
         Ok(status) => status.into(),

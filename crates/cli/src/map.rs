@@ -62,7 +62,7 @@ fn make(args: &MapArgs, mut worker: Worker) -> Result<Product, Failure> {
     })?;
     worker.stop.lift_limit();
     let pictures = match &args.pictures {
-        Some(_) => Some(pictures::draw(&mesh.soup, &solution.map)),
+        Some(_) => Some(pictures::draw(&mesh.soup, &solution.map, &args.texture)),
         None => None,
     };
     let pictures = pictures

@@ -1,28 +1,35 @@
 //! Pictures of a map as PNG files.
 
+use crate::args::TextureArgs;
 use seamstress::SeamlessMap;
 use seamstress_render::{
-    LayoutOptions, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
+    LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
 };
 use seamstress_surface::soup::TriangleSoup;
 
 /// The files, in the order of [`draw`].
 pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
 
-/// Draws the surface from both sides and the layout.
-pub(crate) fn draw(soup: &TriangleSoup, map: &SeamlessMap) -> Result<[Vec<u8>; 3], RenderError> {
+/// Draws the surface from both sides and the layout; the texture is turned, scaled and shifted first.
+pub(crate) fn draw(
+    soup: &TriangleSoup,
+    map: &SeamlessMap,
+    texture: &TextureArgs,
+) -> Result<[Vec<u8>; 3], RenderError> {
+    let corner_uvs: Vec<[f64; 2]> = map.corner_uvs().iter().map(|&uv| texture.apply(uv)).collect();
     let cones: Vec<(u32, i32)> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
     let seams: Vec<[u32; 2]> = map.seams().iter().map(|s| s.vertices).collect();
     let scene = Scene {
         positions: &soup.positions,
         faces: &soup.faces,
-        corner_uvs: Some(map.corner_uvs()),
+        corner_uvs: Some(&corner_uvs),
         cones: &cones,
         seams: &seams,
         features: &[],
     };
     let surface = |view| {
-        let options = SurfaceOptions { view, ..SurfaceOptions::default() };
+        let paint = Paint::checker(texture.period);
+        let options = SurfaceOptions { view, paint, ..SurfaceOptions::default() };
         render_surface(&scene, &options)
     };
     let images = [

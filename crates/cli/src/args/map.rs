@@ -1,6 +1,6 @@
 //! Arguments of `map`.
 
-use super::{EXIT_CODES, RunArgs, not_negative};
+use super::{EXIT_CODES, RunArgs, TextureArgs, not_negative};
 use seamstress::MapOptions;
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use std::path::PathBuf;
@@ -70,6 +70,9 @@ pub(crate) struct MapArgs {
     /// estimated on a small patch as well
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
     pub(crate) rounding: Rounding,
+
+    #[command(flatten)]
+    pub(crate) texture: TextureArgs,
 
     #[command(flatten)]
     pub(crate) run: RunArgs,

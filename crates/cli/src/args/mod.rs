@@ -2,9 +2,13 @@
 
 mod check;
 mod map;
+mod quads;
+mod texture;
 
 pub(crate) use check::CheckArgs;
 pub(crate) use map::MapArgs;
+pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
+pub(crate) use texture::TextureArgs;
 
 use clap::{Parser, Subcommand, value_parser};
 use std::time::Duration;
@@ -51,6 +55,8 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     Map(MapArgs),
     Check(CheckArgs),
+    LayoutQuads(LayoutQuadsArgs),
+    Quality(QualityArgs),
 }
 
 /// What every command that may take long has.

@@ -6,3 +6,4 @@ mod check;
 mod failures;
 mod harness;
 mod map;
+mod quads;
