@@ -6,6 +6,8 @@
 //! the file, the line or byte, what was found and what was expected; time and memory are linear in
 //! the size of the file, whatever its header announces. Geometry and topology are not judged here.
 //!
+//! [`read_pairs`] and [`read_sharp`] read files that name feature edges, in the same manner.
+//!
 //! [`write_map_obj`] and [`write_singularities`] write results, and [`AtomicFile`] puts a file in
 //! place only when it is complete.
 //!
@@ -27,6 +29,7 @@
 
 mod atomic;
 mod error;
+mod feature_lines;
 mod format;
 mod mesh;
 mod note;
@@ -43,6 +46,7 @@ mod write;
 
 pub use atomic::{AtomicFile, WriteError};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
+pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};
 pub use format::Format;
 pub use mesh::{CornerUvs, PolygonMesh, Polygons};
 pub use note::Note;
