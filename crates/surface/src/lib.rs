@@ -4,11 +4,13 @@
 //!   repaired on request.
 //! * [`TriMesh`]: half-edge connectivity of an oriented manifold, no geometry.
 //! * [`Metric`]: edge lengths and what follows from them: angles, areas, flat corners, curvature.
+//! * [`features`]: edges that lines of a map should follow, and the curves they form.
 //! * [`components`]: the connected pieces of a soup, each a mesh of its own.
 //!
 //! Nothing here reads files, solves systems or prints.
 
 pub mod components;
+pub mod features;
 pub mod ids;
 mod mesh;
 mod metric;

@@ -186,6 +186,17 @@ impl TriMesh {
         Outgoing { mesh: self, first, next: first }
     }
 
+    /// The edge between two vertices, as the smaller of its half-edges; `None` if there is none, or
+    /// no such vertex.
+    pub fn edge_between(&self, a: Vertex, b: Vertex) -> Option<Halfedge> {
+        let towards = |from: Vertex, to: Vertex| {
+            let exists = from.at() < self.n_vertices();
+            let mut outgoing = exists.then(|| self.outgoing(from)).into_iter().flatten();
+            outgoing.find(|&h| self.tip(h) == to)
+        };
+        towards(a, b).into_iter().chain(towards(b, a)).min()
+    }
+
     /// Number of faces at a vertex.
     pub fn valence(&self, v: Vertex) -> usize {
         self.outgoing(v).count()
@@ -298,6 +309,19 @@ mod tests {
             for (i, &h) in fan.iter().enumerate() {
                 assert_eq!(mesh.twin(h.prev()), Some(fan[(i + 1) % 3]));
             }
+        }
+    }
+
+    #[test]
+    fn edges_are_found_from_both_ends() {
+        let mesh = TriMesh::from_faces(5, &[[0, 2, 3], [0, 1, 2], [0, 3, 4]]).unwrap();
+        for h in mesh.edges() {
+            let (a, b) = (mesh.origin(h), mesh.tip(h));
+            assert_eq!(mesh.edge_between(a, b), Some(h));
+            assert_eq!(mesh.edge_between(b, a), Some(h));
+        }
+        for [a, b] in [[1, 3], [0, 0], [0, 5], [7, 0]] {
+            assert_eq!(mesh.edge_between(Vertex(a), Vertex(b)), None);
         }
     }
 

@@ -1,0 +1,18 @@
+//! Feature edges: those that lines of a map should follow, such as creases, rims and boundaries.
+//!
+//! * [`EdgeSet`]: a set of edges of a mesh, from vertex pairs ([`EdgeFinder`]), from dihedral angles
+//!   ([`sharp_edges`]) or the boundary.
+//! * [`sectors`]: the fans of corners into which a set of edges parts the surface around a vertex.
+//! * [`FeatureGraph`]: corners, curves, loops and open ends of a set.
+
+mod dihedral;
+mod edge_set;
+mod finder;
+mod graph;
+mod sector;
+
+pub use dihedral::{dihedral_angle, sharp_edges};
+pub use edge_set::EdgeSet;
+pub use finder::{EdgeFinder, FeatureError};
+pub use graph::{Curve, FeatureGraph, Node, NodeKind};
+pub use sector::{Sector, sectors};
