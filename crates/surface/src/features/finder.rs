@@ -6,7 +6,7 @@ use crate::mesh::TriMesh;
 /// Why a name is not that of an edge.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum FeatureError {
+pub enum EdgeNameError {
     /// A pair names a vertex that does not exist.
     #[error("vertex {vertex} of the pair {}-{} does not exist: there are {n_vertices}, counted from 0", pair[0], pair[1])]
     NoSuchVertex {
@@ -84,14 +84,14 @@ impl<'a> EdgeFinder<'a> {
     ///
     /// # Errors
     /// If there is no such vertex or no such edge.
-    pub fn find(&self, pair: [u32; 2]) -> Result<Vec<Halfedge>, FeatureError> {
+    pub fn find(&self, pair: [u32; 2]) -> Result<Vec<Halfedge>, EdgeNameError> {
         if let Some(&vertex) = pair.iter().find(|&&v| v as usize >= self.n_vertices) {
-            return Err(FeatureError::NoSuchVertex { pair, vertex, n_vertices: self.n_vertices });
+            return Err(EdgeNameError::NoSuchVertex { pair, vertex, n_vertices: self.n_vertices });
         }
         let [from, to] = pair.map(|v| self.now(v));
         let pairs = from.iter().flat_map(|&a| to.iter().map(move |&b| (a, b)));
         let found: Vec<_> = pairs.filter_map(|(a, b)| self.mesh.edge_between(a, b)).collect();
-        if found.is_empty() { Err(FeatureError::NotAnEdge { pair }) } else { Ok(found) }
+        if found.is_empty() { Err(EdgeNameError::NotAnEdge { pair }) } else { Ok(found) }
     }
 
     /// What a vertex is called now.
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(finder.find([0, 2]), Ok(vec![Halfedge(2)]));
         assert_eq!(finder.find([2, 0]), Ok(vec![Halfedge(2)]));
         for pair in [[1, 3], [0, 4], [2, 2]] {
-            assert_eq!(finder.find(pair), Err(FeatureError::NotAnEdge { pair }));
+            assert_eq!(finder.find(pair), Err(EdgeNameError::NotAnEdge { pair }));
         }
         let error = finder.find([1, 5]).unwrap_err();
         let text = "vertex 5 of the pair 1-5 does not exist: there are 5, counted from 0";
@@ -141,8 +141,8 @@ mod tests {
             assert!(ends == [a, b] || ends == [b, a]);
         }
         for pair in [[0, 1], [2, 4], [3, 3]] {
-            assert_eq!(finder.find(pair), Err(FeatureError::NotAnEdge { pair }));
+            assert_eq!(finder.find(pair), Err(EdgeNameError::NotAnEdge { pair }));
         }
-        assert!(matches!(finder.find([6, 0]), Err(FeatureError::NoSuchVertex { vertex: 6, .. })));
+        assert!(matches!(finder.find([6, 0]), Err(EdgeNameError::NoSuchVertex { vertex: 6, .. })));
     }
 }

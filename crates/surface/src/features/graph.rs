@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(graph.count(NodeKind::Junction), 1);
         assert_eq!(graph.count(NodeKind::BoundaryEnd), 0);
         assert_eq!(
-            graph.nodes[1],
+            graph.nodes[2],
             Node { vertex: Vertex(10), degree: 3, kind: NodeKind::Junction }
         );
         assert_eq!(graph.curves.iter().map(|c| c.boundary_edges).sum::<usize>(), 16);

@@ -13,6 +13,6 @@ mod sector;
 
 pub use dihedral::{dihedral_angle, sharp_edges};
 pub use edge_set::EdgeSet;
-pub use finder::{EdgeFinder, FeatureError};
+pub use finder::{EdgeFinder, EdgeNameError};
 pub use graph::{Curve, FeatureGraph, Node, NodeKind};
 pub use sector::{Sector, sectors};
