@@ -15,6 +15,6 @@ pub mod quality;
 pub mod quarter;
 pub mod rounding;
 
-pub use map::{SeamlessMap, Tolerance, Violation, Violations};
+pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{ComponentStats, MapError, MapOptions, MapSolution, StageStats, make_map};
 pub use progress::{Observer, Progress, Stage};

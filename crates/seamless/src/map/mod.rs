@@ -1,7 +1,9 @@
 //! Certified maps: the only way to a [`SeamlessMap`] is through its certificate.
 
+mod alignment;
 mod certificate;
 mod violation;
 
+pub use alignment::{Alignment, AlignmentTolerance};
 pub use certificate::{Certificate, Cone, SeamEdge, SeamlessMap, Tolerance, compare_source};
 pub use violation::{Violation, Violations};

@@ -94,6 +94,36 @@ pub enum Violation {
         /// 4 chi.
         expected: i64,
     },
+    /// A pair of vertices that should name an aligned edge does not.
+    #[error("no edge joins the vertices {} and {}, which should be aligned", vertices[0], vertices[1])]
+    NotAnEdge {
+        /// The pair.
+        vertices: [u32; 2],
+    },
+    /// The image of an aligned edge is not parallel to an axis.
+    #[error("edge {}-{} is {degrees:e} degrees off the axes in face {face}", vertices[0], vertices[1])]
+    OffAxis {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// The face on the side of this image.
+        face: u32,
+        /// Angle to the nearer axis, degrees.
+        degrees: f64,
+    },
+    /// The angle between two aligned edges is not a positive multiple of a quarter turn.
+    #[error(
+        "at vertex {vertex} the angle between the aligned edges to {} and {} is {quarters} quarter turns",
+        between[0], between[1]
+    )]
+    SectorAngle {
+        /// The vertex.
+        vertex: u32,
+        /// The other ends of the two edges, counter-clockwise; the same vertex for the full turn at
+        /// the end of a single edge.
+        between: [u32; 2],
+        /// The angle, quarter turns.
+        quarters: f64,
+    },
 }
 
 /// All violations found.
