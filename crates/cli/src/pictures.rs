@@ -25,7 +25,7 @@ pub(crate) fn draw(
         corner_uvs: Some(&corner_uvs),
         cones: &cones,
         seams: &seams,
-        features: &[],
+        ..Scene::default()
     };
     let surface = |view| {
         let paint = Paint::checker(texture.period);

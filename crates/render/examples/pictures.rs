@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         corner_uvs: textured.then_some(&mesh.uvs[..]),
         cones: &cones,
         seams: &seams,
-        features: &[],
+        ..Scene::default()
     };
     for (name, view) in [("front", View::Front), ("back", View::Back)] {
         let paint = match textured {

@@ -24,7 +24,7 @@ pub enum RenderError {
     /// An element names a vertex that does not exist.
     #[error("{what} {index} names vertex {vertex}, but the scene has {vertices} vertices")]
     VertexOutOfRange {
-        /// What names the vertex: a face, cone, seam or feature.
+        /// What names the vertex: a face, cone, seam, feature, corner or end.
         what: &'static str,
         /// Its place in the list.
         index: usize,
@@ -46,7 +46,7 @@ pub enum RenderError {
     /// There are more elements than the picture can tell apart.
     #[error("{found} {what} are more than a picture can hold")]
     TooMany {
-        /// Which elements: faces or cones.
+        /// Which elements: faces or dots.
         what: &'static str,
         /// How many there are.
         found: usize,

@@ -8,7 +8,7 @@ use crate::paint::{Coat, FaceCoat, Paint, signed_area};
 use crate::palette::{Palette, hex};
 use crate::raster::{Band, EMPTY, ScreenPoint, range};
 use crate::scene::{Scene, check_finite};
-use crate::surface::check_fractions;
+use crate::surface::{FEATURE_WIDTH, check_fractions};
 use crate::topology::{edges, matched_corners, next_corner, sorted_sides};
 use crate::{Image, RenderError};
 
@@ -23,7 +23,8 @@ pub struct LayoutOptions {
     pub supersampling: u32,
     /// Free space on each side, as a fraction of the picture.
     pub margin: f64,
-    /// Width of the boundary and of seams, as a fraction of the picture's shorter side.
+    /// Width of the boundary and of seams, as a fraction of the picture's shorter side; features are
+    /// twice as wide.
     pub line_width: f64,
     /// Width of the edges of triangles, as a fraction of the picture's shorter side. They fade
     /// where the triangles are too small for them.
@@ -58,6 +59,8 @@ const EDGES_FADE: [[f64; 2]; 2] = [[2.5, 14.0], [0.5, 4.0]];
 /// Ids of samples that show something other than a face.
 const OUTLINE: u32 = EMPTY - 1;
 const FLIPPED: u32 = EMPTY - 2;
+const FEATURE: u32 = EMPTY - 3;
+const RELEASED: u32 = EMPTY - 4;
 const FIRST_CONE: u32 = 1 << 31;
 
 /// Draws the UVs of a scene in their plane, `v` upwards.
@@ -89,6 +92,8 @@ struct LayoutPicture<'a> {
     flipped: Vec<u32>,
     coat: Coat<'a>,
     outlines: Vec<[ScreenPoint; 2]>,
+    /// Both sides of each feature, with [`FEATURE`] or [`RELEASED`].
+    features: Vec<([ScreenPoint; 2], u32)>,
     dots: Vec<(ScreenPoint, [f32; 3])>,
     half_width: f64,
     edge_half_width: f64,
@@ -97,6 +102,8 @@ struct LayoutPicture<'a> {
     per_pixel: f64,
     background: [f32; 3],
     outline: [f32; 3],
+    feature: [f32; 3],
+    released: [f32; 3],
     edge: [f32; 3],
     flipped_color: [f32; 3],
 }
@@ -129,6 +136,7 @@ impl<'a> LayoutPicture<'a> {
             outlines: outlines(scene, &plane)
                 .map(|[a, b]| [a, b].map(|c| corners[c as usize / 3][c as usize % 3]))
                 .collect(),
+            features: features(scene, &corners),
             dots: dots(scene, &corners, &options.palette),
             half_width: 0.5 * options.line_width * shorter,
             edge_half_width: 0.5 * options.edge_width * shorter,
@@ -140,6 +148,8 @@ impl<'a> LayoutPicture<'a> {
             per_pixel: f64::from(raster.per_pixel()),
             background: to_linear(options.palette.background),
             outline: to_linear(options.palette.seam),
+            feature: to_linear(options.palette.feature),
+            released: to_linear(options.palette.released),
             edge: to_linear(options.palette.edge),
             flipped_color: to_linear(options.palette.flipped),
             corners,
@@ -211,6 +221,30 @@ fn outlines<'b>(
     found.into_iter()
 }
 
+/// The sides along features, kept and released.
+fn features(scene: &Scene, corners: &[[ScreenPoint; 3]]) -> Vec<([ScreenPoint; 2], u32)> {
+    let sorted = |list: &[[u32; 2]]| {
+        let mut list = list.to_vec();
+        list.iter_mut().for_each(|s| s.sort_unstable());
+        list.sort_unstable();
+        list
+    };
+    let lists = [(sorted(scene.features), FEATURE), (sorted(scene.released), RELEASED)];
+    if lists.iter().all(|(list, _)| list.is_empty()) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (face, points) in scene.faces.iter().zip(corners) {
+        for k in 0..3 {
+            let mut ends = [face[k], face[(k + 1) % 3]];
+            ends.sort_unstable();
+            let of = lists.iter().filter(|(list, _)| list.binary_search(&ends).is_ok());
+            found.extend(of.map(|&(_, id)| ([points[k], points[(k + 1) % 3]], id)));
+        }
+    }
+    found
+}
+
 /// The places and colours of the cones, at every corner of theirs.
 fn dots(
     scene: &Scene,
@@ -248,6 +282,10 @@ impl Painter for LayoutPicture<'_> {
             }
         }
         if self.half_width > 0.0 {
+            for &(ends, id) in &self.features {
+                let ends = ends.map(|p| ScreenPoint { depth: 1.0, ..p });
+                band.draw_line(ends, FEATURE_WIDTH * self.half_width, id, |_, _, _| 0.0);
+            }
             for &ends in &self.outlines {
                 let ends = ends.map(|p| ScreenPoint { depth: 1.0, ..p });
                 band.draw_line(ends, self.half_width, OUTLINE, |_, _, _| 0.0);
@@ -271,6 +309,8 @@ impl Painter for LayoutPicture<'_> {
                 EMPTY => self.background,
                 OUTLINE => self.outline,
                 FLIPPED => self.flipped_color,
+                FEATURE => self.feature,
+                RELEASED => self.released,
                 dot if dot >= FIRST_CONE => {
                     let (centre, color) = self.dots[(dot - FIRST_CONE) as usize];
                     let reach = (x - centre.x).hypot(y - centre.y);

@@ -16,6 +16,12 @@ pub struct Palette {
     pub seam: [f64; 3],
     /// Feature lines.
     pub feature: [f64; 3],
+    /// Feature lines that could not be kept.
+    pub released: [f64; 3],
+    /// Where feature lines meet or turn.
+    pub corner: [f64; 3],
+    /// Where feature lines end inside the surface.
+    pub open_end: [f64; 3],
     /// Edges of triangles in a layout.
     pub edge: [f64; 3],
     /// Triangles whose UVs are flipped.
@@ -30,6 +36,9 @@ impl Default for Palette {
             negative_cone: hex(0x0072b2),
             seam: hex(0x2b2b33),
             feature: hex(0x008f68),
+            released: hex(0xcc79a7),
+            corner: hex(0x00543d),
+            open_end: hex(0xe69f00),
             edge: hex(0x6b717d),
             flipped: hex(0xd0212b),
         }
@@ -47,13 +56,16 @@ pub(crate) const fn hex(rgb: u32) -> [f64; 3] {
 
 impl Palette {
     /// The colours with the names of their fields.
-    pub(crate) fn entries(&self) -> [(&'static str, [f64; 3]); 7] {
+    pub(crate) fn entries(&self) -> [(&'static str, [f64; 3]); 10] {
         [
             ("background", self.background),
             ("positive_cone", self.positive_cone),
             ("negative_cone", self.negative_cone),
             ("seam", self.seam),
             ("feature", self.feature),
+            ("released", self.released),
+            ("corner", self.corner),
+            ("open_end", self.open_end),
             ("edge", self.edge),
             ("flipped", self.flipped),
         ]

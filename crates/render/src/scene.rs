@@ -17,9 +17,15 @@ pub struct Scene<'a> {
     pub seams: &'a [[u32; 2]],
     /// Feature lines, by the vertices at their ends.
     pub features: &'a [[u32; 2]],
+    /// Feature lines that could not be kept.
+    pub released: &'a [[u32; 2]],
+    /// Vertices at which feature lines meet or turn.
+    pub corners: &'a [u32],
+    /// Vertices at which feature lines end inside the surface.
+    pub open_ends: &'a [u32],
 }
 
-/// More faces or cones than this are refused: corners and overlays share the 32-bit ids of the samples.
+/// More faces or dots than this are refused: corners and overlays share the 32-bit ids of the samples.
 const MAX_ELEMENTS: usize = 1 << 30;
 
 impl Scene<'_> {
@@ -30,14 +36,18 @@ impl Scene<'_> {
         if self.faces.len() > MAX_ELEMENTS {
             return Err(RenderError::TooMany { what: "faces", found: self.faces.len() });
         }
-        if self.cones.len() > MAX_ELEMENTS {
-            return Err(RenderError::TooMany { what: "cones", found: self.cones.len() });
+        let dots = self.cones.len() + self.corners.len() + self.open_ends.len();
+        if dots > MAX_ELEMENTS {
+            return Err(RenderError::TooMany { what: "cones, corners and ends", found: dots });
         }
         check_finite("vertex", self.positions)?;
         self.check_vertices("face", self.faces.iter().map(|f| &f[..]))?;
         self.check_vertices("cone", self.cones.iter().map(|c| std::slice::from_ref(&c.0)))?;
         self.check_vertices("seam", self.seams.iter().map(|s| &s[..]))?;
         self.check_vertices("feature", self.features.iter().map(|s| &s[..]))?;
+        self.check_vertices("released feature", self.released.iter().map(|s| &s[..]))?;
+        self.check_vertices("corner", self.corners.iter().map(std::slice::from_ref))?;
+        self.check_vertices("open end", self.open_ends.iter().map(std::slice::from_ref))?;
         if let Some(uvs) = self.corner_uvs {
             if uvs.len() != 3 * self.faces.len() {
                 return Err(RenderError::WrongCount {

@@ -30,11 +30,13 @@ pub struct SurfaceOptions {
     pub supersampling: u32,
     /// Free space on each side, as a fraction of the picture.
     pub margin: f64,
-    /// Width of seams and features, as a fraction of the picture's shorter side.
+    /// Width of seams, as a fraction of the picture's shorter side; features are twice as wide, so that
+    /// they show on both sides of a seam.
     pub line_width: f64,
     /// How much hollows darken, between 0 (not at all) and 1.
     pub occlusion: f64,
-    /// Radius of the balls on cones, as a fraction of the picture's shorter side.
+    /// Radius of the balls on cones, as a fraction of the picture's shorter side; those on corners
+    /// and open ends are a little smaller.
     pub cone_radius: f64,
     /// The other colours.
     pub palette: Palette,
@@ -64,10 +66,16 @@ const GRAZING_SLACK: f64 = 0.02;
 /// Balls come this much of their radius towards the viewer, to sit on the surface.
 const BALL_LIFT: f64 = 0.5;
 
+/// Width of features in widths of seams.
+pub(crate) const FEATURE_WIDTH: f64 = 2.0;
+/// Radius of the balls on corners and ends of features in radii of those on cones.
+const CORNER_RADIUS: f64 = 0.75;
+
 /// Ids of samples that show something other than a face.
 const SEAM: u32 = EMPTY - 1;
 const FEATURE: u32 = EMPTY - 2;
-const FIRST_CONE: u32 = 1 << 31;
+const RELEASED: u32 = EMPTY - 3;
+const FIRST_BALL: u32 = 1 << 31;
 
 /// Draws the surface of a scene.
 ///
@@ -102,9 +110,17 @@ pub(crate) fn check_fractions<const N: usize>(
     }
 }
 
-/// A ball on a cone, as it falls on the screen.
+/// A line on the surface, as it falls on the screen.
+struct Line {
+    ends: [ScreenPoint; 2],
+    half_width: f64,
+    id: u32,
+}
+
+/// A ball on a vertex, as it falls on the screen.
 struct Ball {
     centre: ScreenPoint,
+    radius: f64,
     bulge: f64,
     color: [f32; 3],
 }
@@ -122,13 +138,12 @@ struct SurfacePicture<'a> {
     /// Samples along the side of a pixel.
     per_pixel: usize,
     positions: Vec<Vec3>,
-    lines: Vec<([ScreenPoint; 2], u32)>,
-    half_width: f64,
+    lines: Vec<Line>,
     balls: Vec<Ball>,
-    ball_radius: f64,
     background: [f32; 3],
     seam: [f32; 3],
     feature: [f32; 3],
+    released: [f32; 3],
 }
 
 impl<'a> SurfacePicture<'a> {
@@ -158,20 +173,29 @@ impl<'a> SurfacePicture<'a> {
             let (low, high) = range(f.map(|v| at(v).y));
             [(low - 1.0) as f32, (high + 1.0) as f32]
         });
-        let features =
-            scene.features.iter().filter(|s| s.iter().all(seen)).map(|s| (s.map(at), FEATURE));
-        let seams = scene.seams.iter().filter(|s| s.iter().all(seen)).map(|s| (s.map(at), SEAM));
+        let half_width = 0.5 * options.line_width * raster.shorter_side();
+        let lines = |list: &'a [[u32; 2]], id, half_width| {
+            let seen = list.iter().filter(|s| s.iter().all(seen));
+            seen.map(move |s| Line { ends: s.map(at), half_width, id })
+                .filter(|l| l.half_width > 0.0)
+        };
+        let wide = FEATURE_WIDTH * half_width;
+        let lines = lines(scene.features, FEATURE, wide)
+            .chain(lines(scene.released, RELEASED, wide))
+            .chain(lines(scene.seams, SEAM, half_width));
+        let palette = &options.palette;
         let ball_radius = options.cone_radius * raster.shorter_side();
-        let cones = scene.cones.iter().filter(|c| seen(&c.0));
-        let balls = cones.map(|&(vertex, index)| {
+        let small = CORNER_RADIUS * ball_radius;
+        let corners = scene.corners.iter().map(|&v| (v, small, palette.corner));
+        let ends = scene.open_ends.iter().map(|&v| (v, small, palette.open_end));
+        let cones = scene.cones.iter().map(|&(v, index)| (v, ball_radius, palette.cone(index)));
+        let balls =
+            corners.chain(ends).chain(cones).filter(|(v, radius, _)| seen(v) && *radius > 0.0);
+        let balls = balls.map(|(vertex, radius, color)| {
             let centre = at(vertex);
-            let bulge = camera.bulge(centre, ball_radius);
+            let bulge = camera.bulge(centre, radius);
             let depth = centre.depth + BALL_LIFT * bulge;
-            Ball {
-                centre: ScreenPoint { depth, ..centre },
-                bulge,
-                color: to_linear(options.palette.cone(index)),
-            }
+            Ball { centre: ScreenPoint { depth, ..centre }, radius, bulge, color: to_linear(color) }
         });
         Ok(Self {
             faces: scene.faces,
@@ -179,13 +203,12 @@ impl<'a> SurfacePicture<'a> {
             normals: corner_normals(&positions, scene.faces),
             coat: options.paint.prepare(scene, &positions)?,
             lights: Lights::new(&camera),
-            lines: features.chain(seams).collect(),
-            half_width: 0.5 * options.line_width * raster.shorter_side(),
+            lines: lines.collect(),
             balls: balls.collect(),
-            ball_radius,
-            background: to_linear(options.palette.background),
-            seam: to_linear(options.palette.seam),
-            feature: to_linear(options.palette.feature),
+            background: to_linear(palette.background),
+            seam: to_linear(palette.seam),
+            feature: to_linear(palette.feature),
+            released: to_linear(palette.released),
             occlusion: (options.occlusion > 0.0)
                 .then(|| (Occlusion::new(&positions, scene.faces), options.occlusion)),
             per_pixel: raster.per_pixel() as usize,
@@ -213,8 +236,8 @@ impl<'a> SurfacePicture<'a> {
     }
 
     fn shade_ball(&self, ball: &Ball, x: f64, y: f64) -> [f32; 3] {
-        let right = (x - ball.centre.x) / self.ball_radius;
-        let up = (ball.centre.y - y) / self.ball_radius;
+        let right = (x - ball.centre.x) / ball.radius;
+        let up = (ball.centre.y - y) / ball.radius;
         let back = (1.0 - right * right - up * up).max(0.0).sqrt();
         let camera = &self.camera;
         let sideways = add(scale(camera.right, right), scale(camera.up, up));
@@ -258,18 +281,13 @@ impl Painter for SurfacePicture<'_> {
                 band.fill_triangle(self.corners(face), face as u32);
             }
         }
-        if self.half_width > 0.0 {
-            for &(ends, id) in &self.lines {
-                band.draw_line(ends, self.half_width, id, |below, dx, dy| {
-                    self.slack(below, dx, dy)
-                });
-            }
+        for line in &self.lines {
+            band.draw_line(line.ends, line.half_width, line.id, |below, dx, dy| {
+                self.slack(below, dx, dy)
+            });
         }
-        if self.ball_radius > 0.0 {
-            for (index, ball) in self.balls.iter().enumerate() {
-                let id = FIRST_CONE + index as u32;
-                band.draw_ball(ball.centre, self.ball_radius, ball.bulge, id);
-            }
+        for (index, ball) in self.balls.iter().enumerate() {
+            band.draw_ball(ball.centre, ball.radius, ball.bulge, FIRST_BALL + index as u32);
         }
     }
 
@@ -283,8 +301,9 @@ impl Painter for SurfacePicture<'_> {
                 EMPTY => self.background,
                 SEAM => self.seam,
                 FEATURE => self.feature,
-                cone if cone >= FIRST_CONE => {
-                    self.shade_ball(&self.balls[(cone - FIRST_CONE) as usize], x, y)
+                RELEASED => self.released,
+                ball if ball >= FIRST_BALL => {
+                    self.shade_ball(&self.balls[(ball - FIRST_BALL) as usize], x, y)
                 }
                 face => {
                     if face != current {

@@ -171,6 +171,85 @@ fn seams_show_in_front_only_and_over_features() {
 }
 
 #[test]
+fn released_features_have_their_own_colour() {
+    let (positions, faces) = cube();
+    let options = SurfaceOptions {
+        line_width: 0.02,
+        palette: Palette {
+            feature: [1.0, 0.0, 0.0],
+            released: [0.0, 1.0, 0.0],
+            seam: [0.0, 0.0, 1.0],
+            ..Palette::default()
+        },
+        ..flat_options(Paint::Plain([0.9; 3]))
+    };
+    let front = [[4, 7]];
+    let scene = Scene { positions: &positions, faces: &faces, ..Scene::default() };
+    let picture = |scene: Scene| render_surface(&scene, &options).unwrap();
+    let kept = picture(Scene { features: &front, ..scene });
+    let released = picture(Scene { released: &front, ..scene });
+    assert_eq!((kept.pixel(30, 69), released.pixel(30, 69)), ([255, 0, 0], [0, 255, 0]));
+    // A seam leaves a stripe of the feature on either side.
+    let both = picture(Scene { features: &front, seams: &front, ..scene });
+    assert_eq!((channels(&both, 30, 69), channels(&both, 30, 67)), ("--b".into(), "r--".into()));
+    // At the back neither shows.
+    let back = [[0, 3]];
+    let hidden = picture(Scene { features: &back, released: &back, corners: &[0], ..scene });
+    assert_eq!(hidden, picture(scene));
+}
+
+#[test]
+fn corners_and_open_ends_are_dots_under_cones() {
+    let (positions, faces) = cube();
+    let options = SurfaceOptions {
+        size: [200, 200],
+        view: View::Direction([0.4, 0.5, 1.0]),
+        cone_radius: 0.06,
+        palette: Palette {
+            corner: [1.0, 0.0, 0.0],
+            open_end: [0.0, 1.0, 0.0],
+            positive_cone: [0.0, 0.0, 1.0],
+            ..Palette::default()
+        },
+        paint: Paint::Plain([0.9; 3]),
+        ..SurfaceOptions::default()
+    };
+    let scene = Scene { positions: &positions, faces: &faces, ..Scene::default() };
+    // How many pixels each channel rules.
+    let ruled = |scene: Scene| {
+        let image = render_surface(&scene, &options).unwrap();
+        let rules = |p: &[u8], c: usize| (0..3).all(|k| k == c || p[c].saturating_sub(p[k]) > 60);
+        [0, 1, 2].map(|c| image.rgb8().chunks(3).filter(|p| rules(p, c)).count())
+    };
+    assert_eq!(ruled(scene), [0; 3]);
+    let [red, green, blue] = ruled(Scene { corners: &[7], ..scene });
+    assert!(red > 60 && green == 0 && blue == 0);
+    let [red, green, blue] = ruled(Scene { open_ends: &[7], ..scene });
+    assert!(red == 0 && green > 60 && blue == 0);
+    let [red, _, blue] = ruled(Scene { corners: &[7], cones: &[(7, 1)], ..scene });
+    assert!(red == 0 && blue > 100);
+}
+
+#[test]
+fn features_of_a_layout_run_along_their_sides() {
+    let palette = Palette {
+        feature: [1.0, 0.0, 0.0],
+        released: [0.0, 1.0, 1.0],
+        seam: [0.0; 3],
+        ..Palette::default()
+    };
+    let options = LayoutOptions { palette, ..layout_options() };
+    let diagonal = [[2, 0]];
+    let kept = render_layout(&Scene { features: &diagonal, ..square() }, &options).unwrap();
+    assert_eq!((channels(&kept, 50, 49), channels(&kept, 80, 50)), ("r--".into(), "-g-".into()));
+    let released = render_layout(&Scene { released: &diagonal, ..square() }, &options).unwrap();
+    assert_eq!(channels(&released, 50, 49), "-gb");
+    // Beside the rim, which is drawn over it.
+    let rim = render_layout(&Scene { features: &[[0, 3]], ..square() }, &options).unwrap();
+    assert_eq!((channels(&rim, 0, 50), channels(&rim, 3, 50)), ("---".into(), "r--".into()));
+}
+
+#[test]
 fn silhouettes_are_smooth() {
     let triangle = Scene {
         positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
@@ -351,11 +430,14 @@ fn bad_scenes_are_errors() {
         assert!(matches!(layout(&scene), Err(RenderError::NotFinite { index: 4, .. })));
     }
     type Change = fn(&mut Scene);
-    let changes: [(&str, Change); 4] = [
+    let changes: [(&str, Change); 7] = [
         ("face", |s| s.faces = &[[0, 1, 4], [0, 1, 2]]),
         ("cone", |s| s.cones = &[(9, 1)]),
         ("seam", |s| s.seams = &[[0, 4]]),
         ("feature", |s| s.features = &[[u32::MAX, 0]]),
+        ("released feature", |s| s.released = &[[0, 4]]),
+        ("corner", |s| s.corners = &[4]),
+        ("open end", |s| s.open_ends = &[7]),
     ];
     for (expected, change) in changes {
         let (a, b) = broken(change);
