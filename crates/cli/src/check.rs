@@ -1,44 +1,57 @@
 //! `seamstress check`.
 
 use crate::args::CheckArgs;
-use crate::faults::{fault_json, listing, violation_json};
+use crate::faults::{fault_json, listing};
+use crate::features::Features;
 use crate::input::LoadedMesh;
 use crate::map_file::MapFile;
 use crate::outcome::{Failure, Status};
+use crate::output::{Kind, Plan, Target};
+use crate::pictures;
 use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::map::compare_source;
-use seamstress::quality::{Distortion, distortion};
-use seamstress::{SeamlessMap, Tolerance, Violation, Violations};
-use seamstress_surface::soup::TriangleSoup;
-use seamstress_surface::{Metric, TriMesh};
+use crate::verdict;
+use seamstress_surface::TriMesh;
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::Path;
 
-/// Faults or violations of each kind that are printed.
+/// Faults of each kind that are printed.
 const SHOWN: usize = 20;
 
 /// Runs the command.
 pub(crate) fn run(args: &CheckArgs) -> Result<Status, Failure> {
+    let mut inputs = vec![args.mesh.as_path()];
+    inputs.extend(args.features.files());
+    let picture = args.picture.iter().map(|path| Target::new(Kind::Picture, path));
+    let plan = Plan::new(&inputs, None, picture.collect())?;
     let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
     match &args.map {
-        None => check_mesh(args, &mesh),
+        None => check_mesh(args, &plan, &mesh),
         Some(path) => check_map(args, &mesh, path),
     }
 }
 
-fn check_mesh(args: &CheckArgs, mesh: &LoadedMesh) -> Result<Status, Failure> {
+fn check_mesh(args: &CheckArgs, plan: &Plan, mesh: &LoadedMesh) -> Result<Status, Failure> {
     let is_mesh = mesh.errors().next().is_none();
+    let features = if is_mesh { features(args, mesh, &mesh.connect()?)? } else { None };
+    if is_mesh {
+        draw(plan, mesh, features.as_ref())?;
+    }
     if args.json {
         let mut value = json_base(args, mesh);
         value["faults"] = mesh.faults.iter().map(fault_json).collect();
         value["is_mesh"] = is_mesh.into();
         value["is_repairable"] = mesh.is_repairable.into();
+        if let Some(features) = &features {
+            value["features"] = features.json();
+        }
         text::print(&report::to_text(&value))?;
     } else {
         let mut rows = summary::mesh_rows(mesh);
         rows.extend(shape_row(mesh));
+        rows.extend(features.iter().flat_map(summary::feature_rows));
         rows.extend(mesh.notes.iter().map(|note| row("note", note)));
         rows.extend(mesh.repairs.iter().map(|repair| row("repair", repair)));
         let warnings = listing(mesh.warnings(), SHOWN);
@@ -49,6 +62,28 @@ fn check_mesh(args: &CheckArgs, mesh: &LoadedMesh) -> Result<Status, Failure> {
         text::print(&rows.join("\n"))?;
     }
     Ok(if is_mesh { Status::Done } else { Status::BadInput })
+}
+
+/// The features, if any are asked for.
+fn features(
+    args: &CheckArgs,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+) -> Result<Option<Features>, Failure> {
+    let asked = &args.features;
+    let resolve = || Features::resolve(&asked.features, asked.align_boundary, mesh, connectivity);
+    asked.is_given().then(resolve).transpose()
+}
+
+/// Writes the picture, if one is asked for.
+fn draw(plan: &Plan, mesh: &LoadedMesh, features: Option<&Features>) -> Result<(), Failure> {
+    let mut batch = plan.begin()?;
+    for target in &plan.targets {
+        let picture = pictures::draw_features(&mesh.soup, features)
+            .map_err(|cause| Failure::Undrawable { file: mesh.path.clone(), cause })?;
+        batch.write(&target.path, |file| file.write_all(&picture))?;
+    }
+    batch.commit()
 }
 
 fn shape_row(mesh: &LoadedMesh) -> Option<String> {
@@ -81,105 +116,38 @@ fn json_base(args: &CheckArgs, mesh: &LoadedMesh) -> Value {
     json!({
         "seamstress": VERSION,
         "command": "check",
-        "options": { "repair": args.repair, "tolerance": args.tolerance().seam },
+        "options": {
+            "repair": args.repair,
+            "tolerance": args.tolerance().seam,
+            "features": report::sources_json(&args.features),
+            "align_boundary": args.features.align_boundary,
+            "alignment_tolerance": args.alignment_tolerance().axis,
+        },
         "input": report::input_json(mesh),
     })
 }
 
 fn check_map(args: &CheckArgs, mesh: &LoadedMesh, path: &Path) -> Result<Status, Failure> {
     let connectivity = mesh.connect()?;
+    let features = features(args, mesh, &connectivity)?;
     let map = MapFile::read(path)?;
-    let verdict = judge(&mesh.soup, &connectivity, map, &args.tolerance());
-    let is_certified = verdict.certified.is_ok();
+    let mut verdict = verdict::judge(&mesh.soup, &connectivity, map, &args.tolerance());
+    if let Some(features) = &features {
+        verdict = verdict.with_features(&connectivity, features, &args.alignment_tolerance());
+    }
     if args.json {
         let mut value = json_base(args, mesh);
+        if let Some(features) = &features {
+            value["features"] = features.json();
+        }
         value["map"] = verdict.json(path);
         text::print(&report::to_text(&value))?;
     } else {
         let mut rows = summary::mesh_rows(mesh);
+        rows.extend(features.iter().flat_map(summary::feature_rows));
         rows.push(row("map", &path.display().to_string()));
         rows.extend(verdict.rows());
         text::print(&rows.join("\n"))?;
     }
-    Ok(if is_certified { Status::Done } else { Status::BadInput })
-}
-
-/// What is to say about a map.
-struct Verdict {
-    certified: Result<SeamlessMap, Violations>,
-    /// Of maps whose faces are those of the mesh.
-    distortion: Option<Distortion>,
-}
-
-fn judge(
-    mesh: &TriangleSoup,
-    connectivity: &TriMesh,
-    map: MapFile,
-    tolerance: &Tolerance,
-) -> Verdict {
-    let mut violations =
-        compare_source((&mesh.positions, &mesh.faces), (&map.soup.positions, &map.soup.faces));
-    if mesh.faces != map.soup.faces {
-        return Verdict { certified: Err(Violations(violations)), distortion: None };
-    }
-    let metric = Metric::from_positions(connectivity, &mesh.positions);
-    let distortion = Some(distortion(connectivity, &metric, &map.corner_uvs));
-    let certified = match SeamlessMap::certify(connectivity, map.corner_uvs, tolerance) {
-        Ok(map) if violations.is_empty() => Ok(map),
-        Ok(_) => Err(Violations(violations)),
-        Err(Violations(more)) => {
-            violations.extend(more);
-            Err(Violations(violations))
-        }
-    };
-    Verdict { certified, distortion }
-}
-
-impl Verdict {
-    fn json(&self, path: &Path) -> Value {
-        let mut value = match (&self.certified, &self.distortion) {
-            (Ok(map), Some(distortion)) => report::map_json(map, distortion),
-            (_, Some(distortion)) => json!({ "distortion": report::distortion_json(distortion) }),
-            (_, None) => json!({}),
-        };
-        let violations: &[Violation] = match &self.certified {
-            Ok(_) => &[],
-            Err(Violations(violations)) => violations,
-        };
-        value["file"] = path.to_string_lossy().into();
-        value["certified"] = self.certified.is_ok().into();
-        value["violations"] = violations.iter().map(violation_json).collect();
-        value
-    }
-
-    fn rows(&self) -> Vec<String> {
-        match (&self.certified, &self.distortion) {
-            (Ok(map), Some(distortion)) => summary::map_rows(map, distortion),
-            (Ok(_), None) => Vec::new(),
-            (Err(Violations(violations)), distortion) => {
-                let mut rows = Vec::new();
-                rows.extend(distortion.iter().flat_map(summary::distortion_rows));
-                let lines = listing(violations, SHOWN);
-                rows.extend(lines.iter().map(|line| row("violation", line)));
-                rows.extend(tolerance_row(violations));
-                let count = counted(violations.len(), "violation");
-                let text = format!("failed: {count} (elements counted from 0)");
-                rows.push(row("certificate", &text));
-                rows
-            }
-        }
-    }
-}
-
-/// How far the worst seam is open, and what that may come from.
-fn tolerance_row(violations: &[Violation]) -> Option<String> {
-    let residuals = violations.iter().filter_map(|violation| match violation {
-        Violation::OpenSeam { residual, .. } => Some(*residual),
-        _ => None,
-    });
-    let worst = residuals.max_by(f64::total_cmp)?;
-    let text = format!(
-        "open by up to {worst:.1e} mean edge lengths; maps written with few digits need `--tolerance`"
-    );
-    Some(row("seams", &text))
+    Ok(if verdict.is_passed() { Status::Done } else { Status::BadInput })
 }

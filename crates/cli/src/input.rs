@@ -3,7 +3,7 @@
 use crate::faults::listing;
 use crate::outcome::Failure;
 use crate::text::{self, counted};
-use seamstress_io::{Format, PolygonMesh, read_mesh};
+use seamstress_io::{Format, PolygonMesh, Polygons, read_mesh};
 use seamstress_surface::TriMesh;
 use seamstress_surface::soup::{
     self, Facts, Fault, Severity, TriangleSoup, Triangulation, TriangulationNotes,
@@ -25,6 +25,12 @@ pub(crate) struct LoadedMesh {
     pub(crate) format: Format,
     /// Vertices and polygons as read.
     pub(crate) n_read: [usize; 2],
+    /// The polygons as read.
+    pub(crate) polygons: Polygons,
+    /// Segments of the `l` elements as read.
+    pub(crate) lines: Vec<[u32; 2]>,
+    /// For each vertex of `soup` the vertex it was in the file, if repairs may have changed that.
+    pub(crate) vertex_origin: Option<Vec<u32>>,
     pub(crate) soup: TriangleSoup,
     /// Counts, topology and size of `soup`.
     pub(crate) facts: Facts,
@@ -49,6 +55,9 @@ impl LoadedMesh {
             path: path.to_owned(),
             format: read.format,
             n_read: [read.positions.len(), read.polygons.len()],
+            polygons: Polygons::new(),
+            lines: Vec::new(),
+            vertex_origin: None,
             soup: TriangleSoup::default(),
             facts: Facts::default(),
             faults: Vec::new(),
@@ -66,6 +75,8 @@ impl LoadedMesh {
     fn triangulate(&mut self, read: PolygonMesh) -> Option<Vec<u32>> {
         let triangulation = soup::triangulate(&read.positions, read.polygons.iter());
         self.soup.positions = read.positions;
+        self.polygons = read.polygons;
+        self.lines = read.lines;
         match triangulation {
             Ok(Triangulation { faces, polygon_of_face, notes, .. }) => {
                 self.notes.extend(triangulation_notes(&notes));
@@ -98,6 +109,7 @@ impl LoadedMesh {
             };
             self.facts = after.facts;
             self.soup = repaired.soup;
+            self.vertex_origin = Some(repaired.vertex_origin);
         } else {
             let repaired = soup::repair(self.soup.clone());
             self.is_repairable = soup::check(&repaired.soup).is_mesh();

@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod faults;
+mod features;
 mod input;
 mod job;
 mod layout_quads;
@@ -19,6 +20,7 @@ mod stop;
 mod summary;
 mod system;
 mod text;
+mod verdict;
 
 use args::{Args, Command};
 use clap::Parser;

@@ -54,6 +54,9 @@ pub(crate) enum Failure {
     BadMesh { file: PathBuf, text: String },
     #[error("{}: {text}", file.display())]
     BadMap { file: PathBuf, text: String },
+    /// A source of features names what is not there.
+    #[error("{}: {text}", file.display())]
+    BadFeatures { file: PathBuf, text: String },
     #[error("{0}")]
     Usage(String),
     #[error(transparent)]
@@ -71,6 +74,8 @@ pub(crate) enum Failure {
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
     NoPicture { file: PathBuf, cause: seamstress_render::RenderError },
+    #[error("{}: no picture could be drawn: {cause}", file.display())]
+    Undrawable { file: PathBuf, cause: seamstress_render::RenderError },
     /// A bug of ours.
     #[error("{}: internal error: {text}. Nothing was written. Please report this with the mesh", file.display())]
     Internal { file: PathBuf, text: String },
@@ -79,7 +84,11 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn status(&self) -> Status {
         match self {
-            Self::Unreadable(_) | Self::BadMesh { .. } | Self::BadMap { .. } => Status::BadInput,
+            Self::Unreadable(_)
+            | Self::BadMesh { .. }
+            | Self::BadMap { .. }
+            | Self::BadFeatures { .. }
+            | Self::Undrawable { .. } => Status::BadInput,
             Self::Usage(_) | Self::Unwritable(_) | Self::Output { .. } => Status::WrongUsage,
             Self::NoMap { .. } | Self::NoPicture { .. } | Self::Internal { .. } => Status::NoMap,
             Self::Stopped { .. } => Status::Stopped,

@@ -1,6 +1,7 @@
 //! Pictures of a map as PNG files.
 
 use crate::args::TextureArgs;
+use crate::features::Features;
 use seamstress::SeamlessMap;
 use seamstress_render::{
     LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
@@ -42,4 +43,25 @@ pub(crate) fn draw(
         image.write_png(file)?;
     }
     Ok(files)
+}
+
+/// Draws a mesh with its features, as a PNG file.
+pub(crate) fn draw_features(
+    soup: &TriangleSoup,
+    features: Option<&Features>,
+) -> Result<Vec<u8>, RenderError> {
+    let corners = features.map(Features::corners).unwrap_or_default();
+    let open_ends = features.map(Features::open_ends).unwrap_or_default();
+    let scene = Scene {
+        positions: &soup.positions,
+        faces: &soup.faces,
+        features: features.map_or(&[], |features| &features.pairs),
+        corners: &corners,
+        open_ends: &open_ends,
+        ..Scene::default()
+    };
+    let options = SurfaceOptions { paint: Paint::plain(), ..SurfaceOptions::default() };
+    let mut file = Vec::new();
+    render_surface(&scene, &options)?.write_png(&mut file)?;
+    Ok(file)
 }

@@ -1,11 +1,12 @@
 //! Reports as JSON.
 
+use crate::args::FeatureArgs;
 use crate::faults::fault_json;
 use crate::input::LoadedMesh;
 use crate::output::Target;
 use seamstress::map::{Certificate, Cone};
 use seamstress::quality::Distortion;
-use seamstress::{ComponentStats, SeamlessMap};
+use seamstress::{Alignment, ComponentStats, SeamlessMap};
 use seamstress_surface::soup::ComponentFacts;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -104,6 +105,16 @@ fn count(keys: impl Iterator<Item = i32>) -> BTreeMap<i32, usize> {
         *counts.entry(key).or_default() += 1;
     }
     counts
+}
+
+/// What was found of features that have to be aligned.
+pub(crate) fn alignment_json(alignment: &Alignment) -> Value {
+    serde_json::to_value(alignment).unwrap_or_default()
+}
+
+/// The sources of features as they were given.
+pub(crate) fn sources_json(args: &FeatureArgs) -> Vec<String> {
+    args.features.iter().map(ToString::to_string).collect()
 }
 
 fn certificate_json(certificate: &Certificate) -> Value {

@@ -1,10 +1,12 @@
 //! Summaries for people.
 
+use crate::features::Features;
 use crate::input::LoadedMesh;
 use crate::report::{Cost, cones_by_index, tau};
 use crate::text::{counted, figure, row};
 use seamstress::quality::Distortion;
-use seamstress::{ComponentStats, SeamlessMap};
+use seamstress::{Alignment, ComponentStats, SeamlessMap};
+use seamstress_surface::features::NodeKind;
 
 /// Name, size and topology of a mesh.
 pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
@@ -34,6 +36,57 @@ pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
             &format!("{components}, {genus}, {boundary}, Euler characteristic {characteristic}"),
         ),
     ]
+}
+
+/// The curves and corners of features, and where they come from.
+pub(crate) fn feature_rows(features: &Features) -> Vec<String> {
+    let graph = &features.graph;
+    let loops = graph.n_loops();
+    let mut text = format!(
+        "{}: {}, {}",
+        counted(features.edges.len(), "edge"),
+        counted(graph.curves.len() - loops, "curve"),
+        counted(loops, "loop"),
+    );
+    for (kind, noun) in [
+        (NodeKind::Junction, "junction"),
+        (NodeKind::Turn, "turn"),
+        (NodeKind::OpenEnd, "open end"),
+        (NodeKind::BoundaryEnd, "end on the boundary"),
+    ] {
+        match graph.count(kind) {
+            0 => {}
+            n if kind == NodeKind::BoundaryEnd && n > 1 => {
+                text += &format!(", {n} ends on the boundary");
+            }
+            n => text += &format!(", {}", counted(n, noun)),
+        }
+    }
+    let mut sources: Vec<String> = features
+        .sources
+        .iter()
+        .map(|(source, edges)| format!("{source} {}", counted(*edges, "edge")))
+        .collect();
+    if features.align_boundary {
+        let edges = counted(features.boundary_edges(), "edge");
+        sources.push(format!("boundary {edges}"));
+    }
+    vec![row("features", &text), row("", &format!("from {}", sources.join(", ")))]
+}
+
+/// What the certificate of alignment says.
+pub(crate) fn alignment_row(alignment: &Alignment) -> String {
+    let text = format!(
+        "passed: {} within {:.1e} degrees of an axis ({} of {} sides exact), {} of whole quarter \
+         turns to {:.1e} rad",
+        counted(alignment.edges, "edge"),
+        alignment.axis_error,
+        alignment.exact_sides,
+        alignment.sides,
+        counted(alignment.sectors, "sector"),
+        alignment.sector_error
+    );
+    row("alignment", &text)
 }
 
 /// Distortion, cones, seams and certificate of a map.

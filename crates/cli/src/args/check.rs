@@ -1,7 +1,7 @@
 //! Arguments of `check`.
 
-use super::{EXIT_CODES, not_negative};
-use seamstress::Tolerance;
+use super::{EXIT_CODES, FeatureArgs, not_negative};
+use seamstress::{AlignmentTolerance, Tolerance};
 use std::path::PathBuf;
 
 const CHECK_EXAMPLES: &str = "\
@@ -9,13 +9,16 @@ Examples:
   seamstress check bunny.ply
   seamstress check bunny.ply bunny.obj
   seamstress check bunny.ply other_program.obj --tolerance 1e-5
+  seamstress check part.obj --features angle:40 --align-boundary --picture part.png
+  seamstress check part.obj part_map.obj --features sharp:part.sharp
   seamstress check scan.stl --json | jq '.faults[].message'";
 
 /// List the faults of a mesh, or certify a map
 ///
 /// With a mesh alone: its size, its topology, and everything that keeps it from being mapped. With a
 /// map as well: whether the map has the mesh's vertices and faces and is seamless, and its distortion;
-/// or else everything that is wrong with it. Vertices, faces and components are counted from 0.
+/// or else everything that is wrong with it. With features: their curves and corners, and whether the
+/// map has them on its grid lines. Vertices, faces and components are counted from 0.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
 pub(crate) struct CheckArgs {
@@ -44,6 +47,27 @@ pub(crate) struct CheckArgs {
     )]
     pub(crate) tolerance: Option<f64>,
 
+    #[command(flatten)]
+    pub(crate) features: FeatureArgs,
+
+    /// How far a feature may be off the axes of the map.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        value_parser = not_negative,
+        requires = "map",
+        help = format!(
+            "How far a feature may be off the axes of the map, in degrees; foreign maps of few \
+             digits need more [default: {:e}]",
+            AlignmentTolerance::default().axis
+        )
+    )]
+    pub(crate) alignment_tolerance: Option<f64>,
+
+    /// Draw the mesh with its features to this PNG file
+    #[arg(long, value_name = "FILE.png", conflicts_with = "map")]
+    pub(crate) picture: Option<PathBuf>,
+
     /// Print everything as JSON on standard output, with all faults
     #[arg(long)]
     pub(crate) json: bool,
@@ -55,6 +79,15 @@ impl CheckArgs {
         let mut tolerance = Tolerance::default();
         if let Some(seam) = self.tolerance {
             tolerance.seam = seam;
+        }
+        tolerance
+    }
+
+    /// How well features must be aligned.
+    pub(crate) fn alignment_tolerance(&self) -> AlignmentTolerance {
+        let mut tolerance = AlignmentTolerance::default();
+        if let Some(axis) = self.alignment_tolerance {
+            tolerance.axis = axis;
         }
         tolerance
     }

@@ -1,11 +1,13 @@
 //! The command line.
 
 mod check;
+mod features;
 mod map;
 mod quads;
 mod texture;
 
 pub(crate) use check::CheckArgs;
+pub(crate) use features::FeatureArgs;
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
 pub(crate) use texture::TextureArgs;

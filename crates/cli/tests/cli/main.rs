@@ -4,6 +4,7 @@
 mod bad_meshes;
 mod check;
 mod failures;
+mod features;
 mod harness;
 mod map;
 mod quads;

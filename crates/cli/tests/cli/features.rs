@@ -1,0 +1,280 @@
+//! Features from every source, what is wrong with them, and the certificate of alignment.
+
+use crate::harness::{Folder, obj};
+use seamstress_surface::soup::TriangleSoup;
+use seamstress_testkit as testkit;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// The features that `check` finds.
+#[track_caller]
+fn features(folder: &Folder, arguments: &[&str]) -> Value {
+    let run = folder.expect(0, &[&["check"], arguments, &["--json"]].concat());
+    let value: Value = serde_json::from_str(&run.stdout).unwrap();
+    value["features"].clone()
+}
+
+/// Expects `check` to refuse features of `in.obj` with these words.
+#[track_caller]
+fn refuse(folder: &Folder, source: &str, message: &str) {
+    let run = folder.expect(1, &["check", "in.obj", "--features", source]);
+    assert!(run.stderr.starts_with("error: "), "{run:?}");
+    assert!(run.stderr.contains(message), "{message} in {}", run.stderr);
+    assert_eq!(run.stdout, "");
+}
+
+#[test]
+fn the_creases_of_a_bracket_by_their_angle() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::l_bracket());
+    let run = folder.expect(0, &["check", "in.obj", "--features", "angle:40"]);
+    // Two L of twelve edges, and six creases of two between them.
+    assert!(
+        run.stdout.contains("features     36 edges: 18 curves, 0 loops, 12 junctions\n"),
+        "{}",
+        run.stdout
+    );
+    assert!(run.stdout.contains("from angle:40 36 edges\n"), "{}", run.stdout);
+    let found = features(&folder, &["in.obj", "--features", "angle:40"]);
+    assert_eq!((&found["edges"], &found["length"]), (&36.into(), &36.0.into()));
+    assert_eq!(found["nodes"].as_array().unwrap().len(), 12);
+    assert_eq!(found["nodes"][0]["kind"], "junction");
+    assert_eq!(features(&folder, &["in.obj", "--features", "angle:100"])["edges"], 0);
+}
+
+#[test]
+fn sources_add_up() {
+    let folder = Folder::new();
+    let mut text = obj(&testkit::disk_grid(4, 4));
+    // A polyline of two edges, and one of them again.
+    text += "l 11 12 13\nl 13 12\n";
+    folder.write("in.obj", text);
+    folder.write("pairs.txt", "# one known, one new\n11 12\n12 17\n");
+    // Side 1 of face 2 runs from vertex 2 to vertex 7.
+    folder.write("in.sharp", "1\n1,2,1\n");
+    let lines = ["in.obj", "--features", "lines"];
+    assert_eq!(features(&folder, &lines)["edges"], 2);
+    let arguments = [
+        &lines[..],
+        &["--features", "pairs:pairs.txt", "--features", "sharp:in.sharp", "--align-boundary"],
+    ];
+    let found = features(&folder, &arguments.concat());
+    let of = |source: &str| {
+        let sources = found["sources"].as_array().unwrap();
+        sources.iter().find(|s| s["source"] == source).unwrap()["edges"].clone()
+    };
+    assert_eq!([of("lines"), of("pairs:pairs.txt"), of("sharp:in.sharp")], [2, 2, 1]);
+    assert_eq!((&found["edges"], &found["boundary_edges"]), (&20.into(), &16.into()));
+    // The lines start on the boundary and turn in the middle; the third edge leaves the boundary.
+    let expected = [("junctions", 2), ("turns", 5), ("open_ends", 2), ("boundary_ends", 0)];
+    for (kind, count) in expected {
+        assert_eq!(found[kind], count, "{kind}: {found:#}");
+    }
+    // Vertices that a curve passes: those of a chain in order.
+    let curves = found["curves"].as_array().unwrap();
+    assert!(curves.iter().any(|curve| curve["vertices"] == serde_json::json!([12, 17])));
+}
+
+#[test]
+fn faces_of_a_sharp_file_are_those_of_the_file() {
+    let folder = Folder::new();
+    // A quad and a triangle: after the split the triangle is face 2.
+    let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\n";
+    folder.write("in.obj", format!("{points}f 1 2 3 4\nf 2 5 3\nl 1 2\n"));
+    folder.write("in.sharp", "2\n1,1,2\n0,0,3\n");
+    let found = features(&folder, &["in.obj", "--features", "sharp:in.sharp"]);
+    let ends: Vec<_> =
+        found["curves"].as_array().unwrap().iter().map(|c| c["vertices"].clone()).collect();
+    assert_eq!(ends, [serde_json::json!([0, 3]), serde_json::json!([1, 2])]);
+    // A side of a polygon is an edge; a diagonal that is no edge after the split is not.
+    assert_eq!(features(&folder, &["in.obj", "--features", "lines"])["edges"], 1);
+    folder.write("in.obj", format!("{points}f 1 2 3 4\nf 2 5 3\nl 2 4\n"));
+    refuse(&folder, "lines", "an `l` element: no edge joins the vertices 1 and 3");
+    refuse(&folder, "sharp:missing.sharp", "missing.sharp: cannot be read");
+    folder.write("in.sharp", "1\n1,0,4\n");
+    refuse(
+        &folder,
+        "sharp:in.sharp",
+        "in.sharp: not edges of in.obj:\n  line 2: face 0 has no side 4: it has 4",
+    );
+    folder.write("in.sharp", "2\n1,0,0\n0,2,0\n");
+    refuse(&folder, "sharp:in.sharp", "line 3: face 2 does not exist: there are 2");
+}
+
+#[test]
+fn what_is_no_edge_is_named_by_its_line() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    refuse(&folder, "lines", "needs an OBJ file with `l` elements");
+    folder.write("p.txt", "0 1\n\n0 99\n4 4\n");
+    refuse(&folder, "pairs:p.txt", "p.txt: not edges of in.obj:\n");
+    refuse(
+        &folder,
+        "pairs:p.txt",
+        "line 3: vertex 99 of the pair 0-99 does not exist: there are 8",
+    );
+    refuse(&folder, "pairs:p.txt", "line 4: no edge joins the vertices 4 and 4");
+    folder.write("p.txt", "0 1 2\n");
+    refuse(&folder, "pairs:p.txt", "p.txt, line 1: expected two vertices, counted from 0");
+    folder.write("p.txt", "7 7\n".repeat(8));
+    refuse(&folder, "pairs:p.txt", "and 3 more");
+    folder.write("s.sharp", "3\n1,0,0\n");
+    refuse(&folder, "sharp:s.sharp", "expected 3 sharp edges, found 1");
+}
+
+#[test]
+fn features_keep_their_names_through_repairs() {
+    let folder = Folder::new();
+    let mut soup = testkit::disk_grid(2, 2);
+    // An unused vertex comes first, and a copy of face 0.
+    soup.positions.insert(0, [5.0; 3]);
+    soup.faces.iter_mut().flatten().for_each(|v| *v += 1);
+    soup.faces.insert(1, soup.faces[0]);
+    folder.write_obj("in.obj", &soup);
+    folder.write("p.txt", "1 2\n");
+    folder.write("s.sharp", "1\n1,1,0\n");
+    for source in ["pairs:p.txt", "sharp:s.sharp"] {
+        let found = features(&folder, &["in.obj", "--repair", "--features", source]);
+        assert_eq!(found["edges"], 1);
+        assert_eq!(found["curves"][0]["vertices"], serde_json::json!([0, 1]));
+    }
+    folder.write("p.txt", "0 1\n");
+    let run = folder.expect(1, &["check", "in.obj", "--repair", "--features", "pairs:p.txt"]);
+    assert!(run.stderr.contains("line 1: no edge joins the vertices 0 and 1"), "{run:?}");
+}
+
+#[test]
+fn wrong_options_are_2() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    folder.write("p.txt", "0 1\n");
+    let wrong: [&[&str]; 7] = [
+        &["--features", "angle:0"],
+        &["--features", "creases"],
+        &["--features"],
+        &["--alignment-tolerance", "1"],
+        &["in.obj", "--picture", "a.png"],
+        &["--picture", "in.obj"],
+        &["--features", "pairs:p.txt", "--picture", "./p.txt"],
+    ];
+    for arguments in wrong {
+        folder.expect(2, &[&["check", "in.obj"], arguments].concat());
+    }
+    assert_eq!(folder.names(), ["in.obj", "p.txt"]);
+    assert_eq!(folder.read("p.txt"), "0 1\n");
+}
+
+#[test]
+fn a_picture_shows_the_features() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    folder.expect(0, &["check", "in.obj", "--picture", "plain.png"]);
+    folder.expect(0, &["check", "in.obj", "--picture", "sharp.png", "--features", "angle:40"]);
+    let [plain, sharp] =
+        ["plain.png", "sharp.png"].map(|name| std::fs::read(folder.path(name)).unwrap());
+    assert!(plain.starts_with(b"\x89PNG") && sharp.starts_with(b"\x89PNG"));
+    assert_ne!(plain, sharp);
+}
+
+#[test]
+fn a_faulty_mesh_has_no_features() {
+    let folder = Folder::new();
+    let mut soup = testkit::cube();
+    soup.faces.push(soup.faces[0]);
+    folder.write_obj("in.obj", &soup);
+    let arguments = ["check", "in.obj", "--align-boundary", "--picture", "a.png"];
+    let run = folder.expect(1, &arguments);
+    assert!(run.stdout.contains("is a copy of") && !run.stdout.contains("features"), "{run:?}");
+    assert_eq!(folder.names(), ["in.obj"]);
+}
+
+/// The planar map of a flat soup, turned by some degrees, with `digits` digits.
+fn turned_map(soup: &TriangleSoup, degrees: f64, digits: usize) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let mut text = String::new();
+    for [x, y, z] in &soup.positions {
+        writeln!(text, "v {x} {y} {z}").unwrap();
+    }
+    for [x, y, _] in &soup.positions {
+        let (u, v) = (cos * x - sin * y, sin * x + cos * y);
+        writeln!(text, "vt {u:.digits$} {v:.digits$}").unwrap();
+    }
+    for face in &soup.faces {
+        let [a, b, c] = face.map(|v| v + 1);
+        writeln!(text, "f {a}/{a} {b}/{b} {c}/{c}").unwrap();
+    }
+    text
+}
+
+#[test]
+fn alignment_is_certified() {
+    let folder = Folder::new();
+    let soup = testkit::disk_grid(4, 4);
+    folder.write_obj("in.obj", &soup);
+    folder.write("straight.obj", turned_map(&soup, 0.0, 17));
+    folder.write("p.txt", "10 11\n11 12\n");
+    let arguments =
+        ["check", "in.obj", "straight.obj", "--features", "pairs:p.txt", "--align-boundary"];
+    let run = folder.expect(0, &arguments);
+    let passed =
+        "alignment    passed: 18 edges within 0.0e0 degrees of an axis (20 of 20 sides exact)";
+    assert!(run.stdout.contains(passed), "{}", run.stdout);
+    let run = folder.expect(0, &[&arguments[..], &["--json"]].concat());
+    let value: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(value["map"]["aligned"], true);
+    assert_eq!(value["map"]["alignment"]["axis_error"], 0.0);
+    // Four corners and two sectors where the path meets the boundary.
+    assert_eq!(value["map"]["alignment"]["sectors_by_quarters"]["1"], 6);
+    assert_eq!(value["features"]["edges"], 18);
+}
+
+#[test]
+fn what_is_not_aligned_is_named() {
+    let folder = Folder::new();
+    let soup = testkit::disk_grid(4, 4);
+    folder.write_obj("in.obj", &soup);
+    folder.write("turned.obj", turned_map(&soup, 1e-4, 17));
+    let arguments = ["check", "in.obj", "turned.obj"];
+    folder.expect(0, &arguments);
+    let aligned = [&arguments[..], &["--align-boundary"]].concat();
+    let run = folder.expect(1, &aligned);
+    assert!(run.stdout.contains("certificate  passed"), "{}", run.stdout);
+    assert!(run.stdout.contains("violation    edge 0-1 is"), "{}", run.stdout);
+    assert!(run.stdout.contains("degrees off the axes in face 0"), "{}", run.stdout);
+    assert!(run.stdout.contains("need `--alignment-tolerance`"), "{}", run.stdout);
+    assert!(run.stdout.contains("alignment    failed: 16 violations"), "{}", run.stdout);
+    let run = folder.expect(1, &[&aligned[..], &["--json"]].concat());
+    let value: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(
+        (&value["map"]["certified"], &value["map"]["aligned"]),
+        (&true.into(), &false.into())
+    );
+    let violations = value["map"]["alignment"]["violations"].as_array().unwrap();
+    assert_eq!((violations.len(), &violations[0]["kind"]), (16, &"off-axis".into()));
+    folder.expect(0, &[&aligned[..], &["--alignment-tolerance", "1e-3"]].concat());
+    // The diagonals are edges as well, and no axis runs along one.
+    folder.write("p.txt", "6 12\n");
+    let run = folder.expect(1, &[&arguments[..], &["--features", "pairs:p.txt"]].concat());
+    assert!(run.stdout.contains("edge 12-6 is 4.4"), "{}", run.stdout);
+    assert!(!run.stdout.contains("--alignment-tolerance"), "{}", run.stdout);
+}
+
+#[test]
+fn the_sharp_file_of_the_collection() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
+    let meshes = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
+    let [mesh, sharp] = ["obj", "sharp"].map(|e| meshes.join(format!("bracket_inches_rem.{e}")));
+    if !mesh.is_file() || !sharp.is_file() {
+        println!("skipped: no bracket_inches_rem in {}", meshes.display());
+        return;
+    }
+    let [mesh, sharp] = [mesh, sharp].map(|path| path.to_str().unwrap().to_owned());
+    let sharp = format!("sharp:{sharp}");
+    let folder = Folder::new();
+    let named = features(&folder, &[&mesh, "--features", &sharp]);
+    assert_eq!((&named["edges"], &named["loops"]), (&1166.into(), &13.into()));
+    // All but a few of them bend by 40 degrees and more: sides are counted as the file means it.
+    let both = features(&folder, &[&mesh, "--features", &sharp, "--features", "angle:40"]);
+    assert_eq!((&both["sources"][1]["edges"], &both["edges"]), (&1145.into(), &1175.into()));
+}
