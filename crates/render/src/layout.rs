@@ -92,8 +92,10 @@ struct LayoutPicture<'a> {
     flipped: Vec<u32>,
     coat: Coat<'a>,
     outlines: Vec<[ScreenPoint; 2]>,
-    /// Both sides of each feature, with [`FEATURE`] or [`RELEASED`].
-    features: Vec<([ScreenPoint; 2], u32)>,
+    /// Both sides of each feature.
+    features: Vec<[ScreenPoint; 2]>,
+    /// The same of released ones.
+    released: Vec<[ScreenPoint; 2]>,
     dots: Vec<(ScreenPoint, [f32; 3])>,
     half_width: f64,
     edge_half_width: f64,
@@ -102,8 +104,8 @@ struct LayoutPicture<'a> {
     per_pixel: f64,
     background: [f32; 3],
     outline: [f32; 3],
-    feature: [f32; 3],
-    released: [f32; 3],
+    feature_color: [f32; 3],
+    released_color: [f32; 3],
     edge: [f32; 3],
     flipped_color: [f32; 3],
 }
@@ -136,7 +138,8 @@ impl<'a> LayoutPicture<'a> {
             outlines: outlines(scene, &plane)
                 .map(|[a, b]| [a, b].map(|c| corners[c as usize / 3][c as usize % 3]))
                 .collect(),
-            features: features(scene, &corners),
+            features: sides_along(scene.features, scene.faces, &corners),
+            released: sides_along(scene.released, scene.faces, &corners),
             dots: dots(scene, &corners, &options.palette),
             half_width: 0.5 * options.line_width * shorter,
             edge_half_width: 0.5 * options.edge_width * shorter,
@@ -148,8 +151,8 @@ impl<'a> LayoutPicture<'a> {
             per_pixel: f64::from(raster.per_pixel()),
             background: to_linear(options.palette.background),
             outline: to_linear(options.palette.seam),
-            feature: to_linear(options.palette.feature),
-            released: to_linear(options.palette.released),
+            feature_color: to_linear(options.palette.feature),
+            released_color: to_linear(options.palette.released),
             edge: to_linear(options.palette.edge),
             flipped_color: to_linear(options.palette.flipped),
             corners,
@@ -221,25 +224,26 @@ fn outlines<'b>(
     found.into_iter()
 }
 
-/// The sides along features, kept and released.
-fn features(scene: &Scene, corners: &[[ScreenPoint; 3]]) -> Vec<([ScreenPoint; 2], u32)> {
-    let sorted = |list: &[[u32; 2]]| {
-        let mut list = list.to_vec();
-        list.iter_mut().for_each(|s| s.sort_unstable());
-        list.sort_unstable();
-        list
-    };
-    let lists = [(sorted(scene.features), FEATURE), (sorted(scene.released), RELEASED)];
-    if lists.iter().all(|(list, _)| list.is_empty()) {
+/// The sides of the faces along edges given by their ends.
+fn sides_along(
+    edges: &[[u32; 2]],
+    faces: &[[u32; 3]],
+    corners: &[[ScreenPoint; 3]],
+) -> Vec<[ScreenPoint; 2]> {
+    if edges.is_empty() {
         return Vec::new();
     }
+    let mut edges = edges.to_vec();
+    edges.iter_mut().for_each(|ends| ends.sort_unstable());
+    edges.sort_unstable();
     let mut found = Vec::new();
-    for (face, points) in scene.faces.iter().zip(corners) {
+    for (face, points) in faces.iter().zip(corners) {
         for k in 0..3 {
             let mut ends = [face[k], face[(k + 1) % 3]];
             ends.sort_unstable();
-            let of = lists.iter().filter(|(list, _)| list.binary_search(&ends).is_ok());
-            found.extend(of.map(|&(_, id)| ([points[k], points[(k + 1) % 3]], id)));
+            if edges.binary_search(&ends).is_ok() {
+                found.push([points[k], points[(k + 1) % 3]]);
+            }
         }
     }
     found
@@ -282,14 +286,14 @@ impl Painter for LayoutPicture<'_> {
             }
         }
         if self.half_width > 0.0 {
-            for &(ends, id) in &self.features {
+            let mut line = |ends: [ScreenPoint; 2], half_width, id| {
                 let ends = ends.map(|p| ScreenPoint { depth: 1.0, ..p });
-                band.draw_line(ends, FEATURE_WIDTH * self.half_width, id, |_, _, _| 0.0);
-            }
-            for &ends in &self.outlines {
-                let ends = ends.map(|p| ScreenPoint { depth: 1.0, ..p });
-                band.draw_line(ends, self.half_width, OUTLINE, |_, _, _| 0.0);
-            }
+                band.draw_line(ends, half_width, id, |_, _, _| 0.0);
+            };
+            let wide = FEATURE_WIDTH * self.half_width;
+            self.features.iter().for_each(|&ends| line(ends, wide, FEATURE));
+            self.outlines.iter().for_each(|&ends| line(ends, self.half_width, OUTLINE));
+            self.released.iter().for_each(|&ends| line(ends, wide, RELEASED));
         }
         if self.dot_radius > 0.0 {
             for (index, (centre, _)) in self.dots.iter().enumerate() {
@@ -309,8 +313,8 @@ impl Painter for LayoutPicture<'_> {
                 EMPTY => self.background,
                 OUTLINE => self.outline,
                 FLIPPED => self.flipped_color,
-                FEATURE => self.feature,
-                RELEASED => self.released,
+                FEATURE => self.feature_color,
+                RELEASED => self.released_color,
                 dot if dot >= FIRST_CONE => {
                     let (centre, color) = self.dots[(dot - FIRST_CONE) as usize];
                     let reach = (x - centre.x).hypot(y - centre.y);

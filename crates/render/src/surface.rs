@@ -31,7 +31,7 @@ pub struct SurfaceOptions {
     /// Free space on each side, as a fraction of the picture.
     pub margin: f64,
     /// Width of seams, as a fraction of the picture's shorter side; features are twice as wide, so that
-    /// they show on both sides of a seam.
+    /// they show on both sides of a seam; released ones cover it.
     pub line_width: f64,
     /// How much hollows darken, between 0 (not at all) and 1.
     pub occlusion: f64,
@@ -181,8 +181,8 @@ impl<'a> SurfacePicture<'a> {
         };
         let wide = FEATURE_WIDTH * half_width;
         let lines = lines(scene.features, FEATURE, wide)
-            .chain(lines(scene.released, RELEASED, wide))
-            .chain(lines(scene.seams, SEAM, half_width));
+            .chain(lines(scene.seams, SEAM, half_width))
+            .chain(lines(scene.released, RELEASED, wide));
         let palette = &options.palette;
         let ball_radius = options.cone_radius * raster.shorter_side();
         let small = CORNER_RADIUS * ball_radius;

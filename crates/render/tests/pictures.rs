@@ -192,6 +192,9 @@ fn released_features_have_their_own_colour() {
     // A seam leaves a stripe of the feature on either side.
     let both = picture(Scene { features: &front, seams: &front, ..scene });
     assert_eq!((channels(&both, 30, 69), channels(&both, 30, 67)), ("--b".into(), "r--".into()));
+    // A released feature covers the seam.
+    let both = picture(Scene { released: &front, seams: &front, ..scene });
+    assert_eq!(both.pixel(30, 69), [0, 255, 0]);
     // At the back neither shows.
     let back = [[0, 3]];
     let hidden = picture(Scene { features: &back, released: &back, corners: &[0], ..scene });
