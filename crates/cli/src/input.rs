@@ -1,6 +1,7 @@
 //! From a file to triangles that have been checked, and repaired if asked.
 
 use crate::faults::listing;
+use crate::map_file::faces_and_uvs;
 use crate::outcome::Failure;
 use crate::text::{self, counted};
 use seamstress_io::{Format, PolygonMesh, Polygons, read_mesh};
@@ -50,7 +51,20 @@ impl LoadedMesh {
     /// # Errors
     /// If the file cannot be read. A mesh with faults is no error here.
     pub(crate) fn load(path: &Path, repair: bool) -> Result<Self, Failure> {
+        Ok(Self::from_read(path, read_mesh(path)?, repair))
+    }
+
+    /// Reads and checks a map: a mesh of triangles, and a UV for every corner.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not a map. A mesh with faults is no error here.
+    pub(crate) fn load_map(path: &Path) -> Result<(Self, Vec<[f64; 2]>), Failure> {
         let read = read_mesh(path)?;
+        let (_, corner_uvs) = faces_and_uvs(path, &read)?;
+        Ok((Self::from_read(path, read, false), corner_uvs))
+    }
+
+    fn from_read(path: &Path, read: PolygonMesh, repair: bool) -> Self {
         let mut mesh = Self {
             path: path.to_owned(),
             format: read.format,
@@ -68,7 +82,7 @@ impl LoadedMesh {
         if let Some(polygon_of_face) = mesh.triangulate(read) {
             mesh.check(repair, &polygon_of_face);
         }
-        Ok(mesh)
+        mesh
     }
 
     /// Splits the polygons; returns the polygon of each face.

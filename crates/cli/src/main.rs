@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod extract;
 mod faults;
 mod features;
 mod input;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     let done = match &args.command {
         Command::Map(args) => map::run(args),
         Command::Check(args) => check::run(args),
+        Command::Extract(args) => extract::run(args),
         Command::LayoutQuads(args) => layout_quads::run(args),
         Command::Quality(args) => quality::run(args),
     };

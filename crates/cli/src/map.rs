@@ -82,7 +82,7 @@ fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(
     }
     for target in &plan.targets {
         batch.write(&target.path, |file| match target.kind {
-            Kind::Map => write_map(file, args, product),
+            Kind::Map | Kind::Quads => write_map(file, args, product),
             Kind::Cones => write_cones(file, product),
             Kind::Report => writeln!(file, "{report}"),
             Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),

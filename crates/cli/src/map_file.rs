@@ -15,25 +15,7 @@ impl MapFile {
     /// Reads an OBJ file with a texture coordinate at every corner of every triangle.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let read = read_mesh(path)?;
-        let corner_uvs = corner_uvs(&read).ok_or_else(|| {
-            let mut text = String::from(
-                "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
-            );
-            for note in &read.notes {
-                text += &format!("\nnote: {note}");
-            }
-            bad_map(path, &text)
-        })?;
-        let faces: Option<Vec<[u32; 3]>> =
-            read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
-        let Some(faces) = faces else {
-            let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
-            let text = format!(
-                "face {} is not a triangle; the faces of a map are the triangles of its mesh",
-                larger.unwrap_or_default()
-            );
-            return Err(bad_map(path, &text));
-        };
+        let (faces, corner_uvs) = faces_and_uvs(path, &read)?;
         Ok(Self { soup: TriangleSoup { positions: read.positions, faces }, corner_uvs })
     }
 }
@@ -45,4 +27,34 @@ fn bad_map(path: &Path, text: &str) -> Failure {
 fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
     let uvs = read.corner_uvs.as_ref()?;
     uvs.corners.iter().map(|&corner| uvs.coordinates.get(corner as usize).copied()).collect()
+}
+
+/// The triangles of a map and the UVs of their corners.
+///
+/// # Errors
+/// If a corner has no UV, or a face is not a triangle.
+pub(crate) fn faces_and_uvs(
+    path: &Path,
+    read: &PolygonMesh,
+) -> Result<(Vec<[u32; 3]>, Vec<[f64; 2]>), Failure> {
+    let corner_uvs = corner_uvs(read).ok_or_else(|| {
+        let mut text = String::from(
+            "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
+        );
+        for note in &read.notes {
+            text += &format!("\nnote: {note}");
+        }
+        bad_map(path, &text)
+    })?;
+    let faces: Option<Vec<[u32; 3]>> =
+        read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
+    let Some(faces) = faces else {
+        let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
+        let text = format!(
+            "face {} is not a triangle; the faces of a map are the triangles of its mesh",
+            larger.unwrap_or_default()
+        );
+        return Err(bad_map(path, &text));
+    };
+    Ok((faces, corner_uvs))
 }

@@ -2,6 +2,7 @@
 
 use seamstress::MapError;
 use seamstress_io::{ReadError, WriteError};
+use seamstress_quads::QuadFaults;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -70,6 +71,13 @@ pub(crate) enum Failure {
         file.display()
     )]
     NoMap { file: PathBuf, cause: MapError },
+    #[error("{}: no quads were extracted: {text}", file.display())]
+    NoQuads { file: PathBuf, text: String },
+    #[error(
+        "{}: the quads are no manifold: {faults}. Nothing was written; `--best-effort` writes them all the same",
+        file.display()
+    )]
+    NoManifold { file: PathBuf, faults: QuadFaults },
     #[error("{}: stopped: {reason}. Nothing was written", file.display())]
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
@@ -88,9 +96,13 @@ impl Failure {
             | Self::BadMesh { .. }
             | Self::BadMap { .. }
             | Self::BadFeatures { .. }
-            | Self::Undrawable { .. } => Status::BadInput,
+            | Self::Undrawable { .. }
+            | Self::NoQuads { .. } => Status::BadInput,
             Self::Usage(_) | Self::Unwritable(_) | Self::Output { .. } => Status::WrongUsage,
-            Self::NoMap { .. } | Self::NoPicture { .. } | Self::Internal { .. } => Status::NoMap,
+            Self::NoManifold { .. }
+            | Self::NoMap { .. }
+            | Self::NoPicture { .. }
+            | Self::Internal { .. } => Status::NoMap,
             Self::Stopped { .. } => Status::Stopped,
         }
     }

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Kind {
     Map,
+    Quads,
     Report,
     Cones,
     Picture,
@@ -29,12 +30,18 @@ impl Target {
         Self { kind, path: path.to_owned() }
     }
 
-    /// Maps are OBJ files; the name must not promise another format.
+    /// The name must not promise a format that is not written.
     fn refuse_other_format(&self) -> Result<(), Failure> {
+        let (what, formats, endings) = match self.kind {
+            Kind::Map => ("maps", &[Format::Obj][..], "OBJ"),
+            Kind::Quads => ("quad meshes", &[Format::Obj, Format::Ply][..], "OBJ or PLY"),
+            Kind::Report | Kind::Cones | Kind::Picture => return Ok(()),
+        };
         match Format::from_path(&self.path) {
-            Some(format) if self.kind == Kind::Map && format != Format::Obj => {
+            Some(format) if !formats.contains(&format) => {
+                let names = endings.to_lowercase().replace("or ", "or .");
                 Err(Failure::Usage(format!(
-                    "{}: maps are written as OBJ, not {format}; give the output a name in .obj",
+                    "{}: {what} are written as {endings}, not {format}; give the output a name in .{names}",
                     self.path.display()
                 )))
             }

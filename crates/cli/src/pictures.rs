@@ -3,6 +3,7 @@
 use crate::args::TextureArgs;
 use crate::features::Features;
 use seamstress::SeamlessMap;
+use seamstress_quads::{IrregularVertex, QuadMesh};
 use seamstress_render::{
     LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
 };
@@ -58,6 +59,35 @@ pub(crate) fn draw_features(
         features: features.map_or(&[], |features| &features.pairs),
         corners: &corners,
         open_ends: &open_ends,
+        ..Scene::default()
+    };
+    let options = SurfaceOptions { paint: Paint::plain(), ..SurfaceOptions::default() };
+    let mut file = Vec::new();
+    render_surface(&scene, &options)?.write_png(&mut file)?;
+    Ok(file)
+}
+
+/// Draws a quad mesh with its edges and irregular vertices.
+pub(crate) fn draw_quads(
+    quads: &QuadMesh,
+    irregular: &[IrregularVertex],
+) -> Result<Vec<u8>, RenderError> {
+    let faces: Vec<[u32; 3]> =
+        quads.quads().iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let mut edges: Vec<[u32; 2]> = quads
+        .quads()
+        .iter()
+        .flat_map(|quad| (0..4).map(|k| [quad[k], quad[(k + 1) % 4]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let cones: Vec<(u32, i32)> = irregular.iter().map(|v| (v.vertex, v.index)).collect();
+    let scene = Scene {
+        positions: quads.positions(),
+        faces: &faces,
+        cones: &cones,
+        seams: &edges,
         ..Scene::default()
     };
     let options = SurfaceOptions { paint: Paint::plain(), ..SurfaceOptions::default() };

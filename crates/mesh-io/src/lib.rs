@@ -8,7 +8,7 @@
 //!
 //! [`read_pairs`] and [`read_sharp`] read files that name feature edges, in the same manner.
 //!
-//! [`write_map_obj`] and [`write_singularities`] write results, and [`AtomicFile`] puts a file in
+//! [`write_map_obj`], [`write_singularities`] and [`Polymesh`] write results, and [`AtomicFile`] puts a file in
 //! place only when it is complete.
 //!
 //! The readers are our own because `tobj`, `ply-rs` and `stl_io` do not tell the line or byte of a
@@ -43,6 +43,7 @@ mod read;
 mod stl;
 mod text;
 mod write;
+mod write_polygons;
 
 pub use atomic::{AtomicFile, WriteError};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
@@ -52,3 +53,4 @@ pub use mesh::{CornerUvs, PolygonMesh, Polygons};
 pub use note::Note;
 pub use read::{parse_mesh, read_mesh};
 pub use write::{MapObj, write_map_obj, write_singularities};
+pub use write_polygons::Polymesh;

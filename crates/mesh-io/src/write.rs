@@ -82,7 +82,7 @@ fn check(map: &MapObj<'_>) -> io::Result<()> {
 }
 
 /// Writes a number so that it reads back exactly: plain if short, with an exponent if tiny or huge.
-struct Number(f64);
+pub(crate) struct Number(pub(crate) f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

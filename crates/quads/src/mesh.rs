@@ -1,5 +1,7 @@
 //! A mesh of quads.
 
+use crate::connectivity::{QuadConnectivity, QuadFaults};
+
 /// Vertices and quads, each quad counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuadMesh {
@@ -38,6 +40,12 @@ impl QuadMesh {
         Ok(Self { positions, quads })
     }
 
+    /// Vertices and quads whose indices are known to be in range.
+    pub(crate) fn from_parts(positions: Vec<[f64; 3]>, quads: Vec<[u32; 4]>) -> Self {
+        debug_assert!(quads.iter().flatten().all(|&v| (v as usize) < positions.len()));
+        Self { positions, quads }
+    }
+
     /// Positions of the vertices.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
@@ -46,5 +54,13 @@ impl QuadMesh {
     /// Corners of the quads.
     pub fn quads(&self) -> &[[u32; 4]] {
         &self.quads
+    }
+
+    /// Who is whose neighbour.
+    ///
+    /// # Errors
+    /// Everything that keeps the quads from being an oriented manifold.
+    pub fn connectivity(&self) -> Result<QuadConnectivity, QuadFaults> {
+        QuadConnectivity::new(self)
     }
 }

@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod flips;
+mod integer_maps;
 mod modify;
 mod patches;
 mod random;
@@ -16,6 +17,7 @@ mod tori;
 mod voxels;
 
 pub use flips::random_flips;
+pub use integer_maps::{IntegerMap, random_voxels, squares};
 pub use modify::{
     bumpy, disjoint_union, klee, relabel, remove_faces, scale, stretch, subdivide, with_boundaries,
 };

@@ -2,12 +2,14 @@
 
 mod check;
 mod features;
+mod extract;
 mod map;
 mod quads;
 mod texture;
 
 pub(crate) use check::CheckArgs;
 pub(crate) use features::FeatureArgs;
+pub(crate) use extract::ExtractArgs;
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
 pub(crate) use texture::TextureArgs;
@@ -29,7 +31,8 @@ Examples:
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
   seamstress check bunny.ply
-  seamstress check bunny.ply bunny.obj";
+  seamstress check bunny.ply bunny.obj
+  seamstress extract integer.obj -o quads.obj";
 
 /// Makes seamless maps of triangle meshes
 ///
@@ -40,7 +43,8 @@ Examples:
 ///
 /// `map` makes a map and certifies it: no triangle is flipped or collapsed, every seam fits, and the
 /// angle at every cone is a multiple of 90 degrees. `check` lists what is wrong with a mesh, or
-/// certifies the map in a file, whatever program wrote it.
+/// certifies the map in a file, whatever program wrote it. `extract` turns an integer map into a quad
+/// mesh.
 #[derive(Debug, Parser)]
 #[command(
     name = "seamstress",
@@ -57,6 +61,7 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     Map(MapArgs),
     Check(CheckArgs),
+    Extract(ExtractArgs),
     LayoutQuads(LayoutQuadsArgs),
     Quality(QualityArgs),
 }

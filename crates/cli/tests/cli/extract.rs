@@ -1,0 +1,140 @@
+//! From integer maps to quad meshes.
+
+use crate::harness::{Folder, lines_of};
+use seamstress_io::{MapObj, write_map_obj};
+use seamstress_testkit::{IntegerMap, cube, disk_grid, slab_with_holes, squares, torus};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+fn write_map(folder: &Folder, name: &str, map: &IntegerMap) {
+    let mut bytes = Vec::new();
+    let IntegerMap { soup, corner_uvs } = map;
+    let obj = MapObj { positions: &soup.positions, faces: &soup.faces, corner_uvs, comments: &[] };
+    write_map_obj(&mut bytes, &obj).unwrap();
+    folder.write(name, bytes);
+}
+
+#[test]
+fn a_map_becomes_quads_with_report_and_picture() {
+    let folder = Folder::new();
+    write_map(&folder, "map.obj", &squares(&slab_with_holes(1), 3).with_random_charts(9, 1));
+    let run = folder.expect(
+        0,
+        &["extract", "map.obj", "-o", "q.obj", "--report", "q.json", "--picture", "q.png"],
+    );
+    let n = 9 * slab_with_holes(1).faces.len() / 2;
+    assert_eq!(run.stderr, "");
+    assert!(run.stdout.contains("Euler characteristic 0"), "{}", run.stdout);
+    assert_eq!(lines_of(&folder.read("q.obj"), "f").len(), n);
+    assert_eq!(folder.names(), ["map.obj", "q.json", "q.obj", "q.png"]);
+    let report: Value = serde_json::from_str(&folder.read("q.json")).unwrap();
+    assert_eq!(report["quads"]["count"], n);
+    assert_eq!(report["quads"]["is_manifold"], true);
+    assert_eq!(report["quads"]["irregular"]["by_valence"]["3"], 8);
+    assert_eq!(report["map"]["uv_area"], n as f64);
+    let again = folder.expect(0, &["quality", "q.obj", "--json"]);
+    assert!(again.stdout.contains(&n.to_string()));
+}
+
+#[test]
+fn quads_are_written_as_ply_too_and_as_nothing_else() {
+    let folder = Folder::new();
+    write_map(&folder, "map.obj", &squares(&cube(), 2));
+    folder.expect(0, &["extract", "map.obj", "-o", "q.ply", "--quiet"]);
+    folder.expect(0, &["layout-quads", "q.ply", "-o", "back.obj"]);
+    folder.expect(0, &["extract", "back.obj", "-o", "again.obj", "--quiet"]);
+    assert_eq!(lines_of(&folder.read("again.obj"), "f").len(), 24);
+    let run = folder.expect(2, &["extract", "map.obj", "-o", "q.stl"]);
+    assert!(run.stderr.contains("quad meshes are written as OBJ or PLY, not STL"), "{run:?}");
+    assert!(run.stderr.contains("in .obj or .ply"), "{run:?}");
+}
+
+#[test]
+fn maps_that_are_not_integral_are_refused() {
+    let folder = Folder::new();
+    let mut map = squares(&torus(4, 4, 2.0, 0.7), 1);
+    map.corner_uvs[..6].iter_mut().for_each(|uv| uv[0] += 0.4);
+    write_map(&folder, "map.obj", &map);
+    let run = folder.expect(1, &["extract", "map.obj", "-o", "q.obj"]);
+    assert!(run.stderr.contains("has the translation"), "{run:?}");
+    assert!(run.stderr.contains("`seamstress integer`"), "{run:?}");
+    folder.write_obj("plain.obj", &cube());
+    let run = folder.expect(1, &["extract", "plain.obj", "-o", "q.obj"]);
+    assert!(run.stderr.contains("not a map"), "{run:?}");
+    assert_eq!(folder.names(), ["map.obj", "plain.obj"]);
+}
+
+#[test]
+fn folds_are_refused_unless_asked_for() {
+    let folder = Folder::new();
+    let mut map = squares(&cube(), 4).with_random_points(1);
+    let middle = map.corner_uvs[2];
+    let images = map.corner_uvs[..9].iter_mut();
+    images.filter(|uv| **uv == middle).for_each(|uv| *uv = [1.9, 2.4]);
+    write_map(&folder, "map.obj", &map);
+    let run = folder.expect(1, &["extract", "map.obj", "-o", "q.obj"]);
+    assert!(run.stderr.contains("1 flipped face: 2"), "{run:?}");
+    assert_eq!(folder.names(), ["map.obj"]);
+    let run = folder.expect(0, &["extract", "map.obj", "-o", "q.obj", "--best-effort"]);
+    assert!(run.stderr.contains("warning: the map folds: 1 flipped face"), "{run:?}");
+    assert_eq!(lines_of(&folder.read("q.obj"), "f").len(), 96);
+}
+
+#[test]
+fn trimmed_cells_are_told() {
+    let folder = Folder::new();
+    let mut map = squares(&disk_grid(1, 1), 1);
+    map.corner_uvs.as_flattened_mut().iter_mut().for_each(|x| *x *= 2.5);
+    write_map(&folder, "map.obj", &map);
+    let run = folder.expect(0, &["extract", "map.obj", "-o", "q.obj"]);
+    assert_eq!(run.stderr, "note: 5 cells cut by the boundary left out\n");
+    assert_eq!(lines_of(&folder.read("q.obj"), "f").len(), 4);
+}
+
+#[test]
+fn a_torus_of_one_quad_is_no_manifold() {
+    let folder = Folder::new();
+    let mut map = squares(&torus(3, 3, 2.0, 0.7), 1);
+    // Nine squares become one: a third of each.
+    let corner = |quad: usize| [(quad / 3) as f64 / 3.0, (quad % 3) as f64 / 3.0];
+    for (at, uv) in map.corner_uvs.iter_mut().enumerate() {
+        let [u, v] = corner(at / 6);
+        *uv = [u + uv[0] / 3.0, v + uv[1] / 3.0];
+    }
+    write_map(&folder, "map.obj", &map);
+    let run = folder.expect(3, &["extract", "map.obj", "-o", "q.obj"]);
+    assert!(run.stderr.contains("the quads are no manifold: quad 0 has vertex"), "{run:?}");
+    assert_eq!(folder.names(), ["map.obj"]);
+}
+
+#[test]
+fn smoothing_keeps_the_quads() {
+    let folder = Folder::new();
+    write_map(&folder, "map.obj", &squares(&torus(8, 5, 2.0, 0.7), 2));
+    folder.expect(0, &["extract", "map.obj", "-o", "raw.obj", "--quiet"]);
+    folder.expect(0, &["extract", "map.obj", "-o", "smooth.obj", "--smooth", "5", "--quiet"]);
+    let [raw, smooth] = ["raw.obj", "smooth.obj"].map(|name| folder.read(name));
+    assert_eq!(lines_of(&raw, "f"), lines_of(&smooth, "f"));
+    assert_ne!(lines_of(&raw, "v"), lines_of(&smooth, "v"));
+}
+
+/// The maps that libQEx is tested with.
+#[test]
+fn maps_with_folds_from_the_collection() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
+    let collection = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
+    let map = collection.join("duck_miq_4_param.obj");
+    if !map.is_file() {
+        println!("skipped: there is no file {}", map.display());
+        return;
+    }
+    let folder = Folder::new();
+    let map = map.to_string_lossy();
+    let run = folder.expect(1, &["extract", &map, "-o", "q.obj"]);
+    assert!(run.stderr.contains("18 flipped faces: 4640, 4642, 5103, 6051, 8140 ..."), "{run:?}");
+    let run = folder.expect(0, &["extract", &map, "-o", "q.obj", "--best-effort", "--json"]);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(report["quads"]["vertices"], 1075);
+    assert_eq!(report["quads"]["is_manifold"], true);
+    assert_eq!(report["map"]["uv_area"], 1073.0);
+}

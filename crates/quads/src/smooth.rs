@@ -1,0 +1,237 @@
+//! Smoothing along a surface.
+
+use crate::{QuadConnectivity, QuadFaults, QuadMesh};
+use parry3d_f64::math::Vector;
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::shape::TriMesh as Surface;
+use rayon::prelude::*;
+
+type Point = [f64; 3];
+
+/// How to smooth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmoothOptions {
+    /// How often every vertex is moved.
+    pub rounds: u32,
+    /// Edges of the quad mesh that stay where they are, by their ends; the boundary always does.
+    pub fixed: Vec<[u32; 2]>,
+}
+
+impl Default for SmoothOptions {
+    fn default() -> Self {
+        Self { rounds: 10, fixed: Vec::new() }
+    }
+}
+
+/// Why quads were not smoothed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SmoothError {
+    /// The quads are no oriented manifold.
+    #[error("the quads are no manifold: {0}")]
+    NoManifold(#[from] QuadFaults),
+    /// The surface has no triangles to project to.
+    #[error("the surface to smooth on cannot be used: {0}")]
+    BadSurface(String),
+}
+
+/// A smoothed mesh.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Smoothed {
+    /// The mesh, with the quads as they were.
+    pub mesh: QuadMesh,
+    /// Moves not made in the last round because a quad would have become worse than it may.
+    pub refused: usize,
+}
+
+/// Part of the way to the mean of the neighbours that a vertex goes in one round.
+const STEP: f64 = 0.5;
+
+/// Moves the vertices of a quad mesh along a surface towards the means of their neighbours.
+///
+/// Each move ends at the point of the surface nearest to its target. Boundary and fixed vertices stay.
+/// A move is made only if it does not raise the worst of the quads around the vertex, judged by the
+/// cosines of their corners and by their orientation, so no quad is inverted that was not before.
+///
+/// Moves of a round are proposed from the same positions, then made one by one in the order of the
+/// vertices: the result does not depend on the number of threads.
+///
+/// # Errors
+/// If the quads are no manifold or the surface has no triangle.
+pub fn smooth(
+    mesh: &QuadMesh,
+    surface: (&[Point], &[[u32; 3]]),
+    options: &SmoothOptions,
+) -> Result<Smoothed, SmoothError> {
+    let connectivity = mesh.connectivity()?;
+    let vertices = surface.0.iter().map(|&[x, y, z]| Vector::new(x, y, z)).collect();
+    let surface = Surface::new(vertices, surface.1.to_vec())
+        .map_err(|error| SmoothError::BadSurface(error.to_string()))?;
+    let mut is_fixed: Vec<bool> =
+        (0..mesh.positions().len() as u32).map(|v| connectivity.is_boundary(v)).collect();
+    for &v in options.fixed.iter().flatten() {
+        if let Some(is_fixed) = is_fixed.get_mut(v as usize) {
+            *is_fixed = true;
+        }
+    }
+    let free: Vec<u32> = (0..mesh.positions().len() as u32)
+        .filter(|&v| !is_fixed[v as usize] && connectivity.valence(v) > 0)
+        .collect();
+    let mut state = State {
+        connectivity: &connectivity,
+        quads: mesh.quads(),
+        positions: mesh.positions().to_vec(),
+    };
+    let mut refused = 0;
+    for _ in 0..options.rounds {
+        let targets: Vec<Point> =
+            free.par_iter().map(|&v| nearest(&surface, state.target(v))).collect();
+        refused = free.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
+    }
+    let positions = state.positions;
+    Ok(Smoothed { mesh: QuadMesh::from_parts(positions, mesh.quads().to_vec()), refused })
+}
+
+fn nearest(surface: &Surface, at: Point) -> Point {
+    let found = surface.project_local_point(Vector::new(at[0], at[1], at[2]), false);
+    [found.point.x, found.point.y, found.point.z]
+}
+
+struct State<'a> {
+    connectivity: &'a QuadConnectivity,
+    quads: &'a [[u32; 4]],
+    positions: Vec<Point>,
+}
+
+impl State<'_> {
+    /// Towards the mean of the neighbours.
+    fn target(&self, v: u32) -> Point {
+        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        for n in self.connectivity.neighbours(v) {
+            sum = add(sum, self.positions[n as usize]);
+            count += 1.0;
+        }
+        let here = self.positions[v as usize];
+        [0, 1, 2].map(|k| here[k] + STEP * (sum[k] / count - here[k]))
+    }
+
+    /// Moves a vertex unless that makes the worst of its quads worse.
+    fn try_move(&mut self, v: u32, to: Point) -> bool {
+        let before = self.worst_around(v);
+        let from = std::mem::replace(&mut self.positions[v as usize], to);
+        let is_better = self.worst_around(v) <= before;
+        if !is_better {
+            self.positions[v as usize] = from;
+        }
+        is_better
+    }
+
+    fn worst_around(&self, v: u32) -> f64 {
+        let quads = self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize]);
+        quads.map(|quad| badness(quad.map(|v| self.positions[v as usize]))).fold(0.0, f64::max)
+    }
+}
+
+/// From 0 for right angles to 1 for a corner of 0 or 180 degrees, and above for reflex corners.
+fn badness(quad: [Point; 4]) -> f64 {
+    let normal = cross(sub(quad[2], quad[0]), sub(quad[3], quad[1]));
+    let corner = |k: usize| {
+        let (a, b) = (sub(quad[(k + 1) % 4], quad[k]), sub(quad[(k + 3) % 4], quad[k]));
+        let cosine = dot(a, b) / (dot(a, a) * dot(b, b)).sqrt();
+        let is_convex = dot(cross(a, b), normal) > 0.0;
+        if is_convex { cosine.abs() } else { 2.0 - cosine.abs() }
+    };
+    (0..4).map(corner).fold(0.0, |worst: f64, c| if c.is_nan() { 2.0 } else { worst.max(c) })
+}
+
+fn add(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|k| a[k] + b[k])
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use seamstress_testkit::{Rng, cube, disk_grid};
+
+    fn quads_of(faces: &[[u32; 3]]) -> Vec<[u32; 4]> {
+        faces.chunks(2).map(|pair| [pair[0][0], pair[0][1], pair[0][2], pair[1][2]]).collect()
+    }
+
+    #[test]
+    fn a_disturbed_grid_becomes_even_and_its_rim_stays() {
+        let grid = disk_grid(8, 8);
+        let mut rng = Rng::new(3);
+        let mut disturbed = grid.positions.clone();
+        for p in disturbed.iter_mut().filter(|p| p[0].abs() < 1.0 && p[1].abs() < 1.0) {
+            p[0] += 0.1 * (rng.unit() - 0.5);
+            p[1] += 0.1 * (rng.unit() - 0.5);
+        }
+        let before = QuadMesh::new(disturbed.clone(), quads_of(&grid.faces)).unwrap();
+        let options = SmoothOptions { rounds: 100, ..SmoothOptions::default() };
+        let smoothed = smooth(&before, (&grid.positions, &grid.faces), &options).unwrap();
+        let distance = |points: &[Point]| {
+            let pairs = points.iter().zip(&grid.positions);
+            pairs.map(|(&a, &b)| dot(sub(a, b), sub(a, b)).sqrt()).fold(0.0, f64::max)
+        };
+        let after = smoothed.mesh.positions();
+        assert!(distance(after) < 0.3 * distance(&disturbed), "{}", distance(after));
+        assert!(after.iter().all(|p| p[2] == 0.0));
+        let worst = |mesh: &QuadMesh| {
+            let quads = mesh.quads().iter().map(|q| q.map(|v| mesh.positions()[v as usize]));
+            quads.map(badness).fold(0.0, f64::max)
+        };
+        assert!(worst(&smoothed.mesh) < worst(&before));
+    }
+
+    #[test]
+    fn fixed_vertices_stay() {
+        let shape = cube();
+        let mut positions = shape.positions.clone();
+        positions[0] = [0.1, 0.0, 0.0];
+        let mesh = QuadMesh::new(positions, quads_of(&shape.faces)).unwrap();
+        let fixed = mesh.quads().iter().map(|q| [q[0], q[2]]).collect();
+        let options = SmoothOptions { rounds: 3, fixed };
+        let smoothed = smooth(&mesh, (&shape.positions, &shape.faces), &options).unwrap();
+        let ends: Vec<u32> = options.fixed.iter().flatten().copied().collect();
+        for v in ends {
+            assert_eq!(smoothed.mesh.positions()[v as usize], mesh.positions()[v as usize]);
+        }
+    }
+
+    #[test]
+    fn badness_by_hand() {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(badness(square), 0.0);
+        let mut dart = square;
+        dart[2] = [0.25, 0.25, 0.0];
+        assert!(badness(dart) > 1.0);
+        let mut kite = square;
+        kite[2] = [0.5, 0.5, 0.0];
+        assert!((badness(kite) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_smoothed_is_refused() {
+        let bow = QuadMesh::new(vec![[0.0; 3]; 7], vec![[0, 1, 2, 3], [2, 4, 5, 6]]).unwrap();
+        let shape = cube();
+        let surface = (&shape.positions[..], &shape.faces[..]);
+        let error = smooth(&bow, surface, &SmoothOptions::default()).unwrap_err();
+        assert!(matches!(error, SmoothError::NoManifold(_)), "{error}");
+        let mesh = QuadMesh::new(shape.positions.clone(), quads_of(&shape.faces)).unwrap();
+        let error = smooth(&mesh, (&shape.positions, &[]), &SmoothOptions::default()).unwrap_err();
+        assert!(matches!(error, SmoothError::BadSurface(_)), "{error}");
+    }
+}
