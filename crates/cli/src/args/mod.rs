@@ -22,7 +22,7 @@ Exit codes:
   0  done; any map written or checked is certified
   1  the input is at fault: unreadable, not a mesh, or not a seamless map
   2  wrong usage: unknown option, or an output that cannot be written
-  3  no certified map could be made; nothing is written
+  3  no certified map could be made, or its quads are no manifold; nothing is written
   4  stopped by the time limit or by Ctrl-C; nothing is written";
 
 const EXAMPLES: &str = "\
