@@ -1,7 +1,7 @@
 //! From a file to triangles that have been checked, and repaired if asked.
 
 use crate::faults::listing;
-use crate::map_file::faces_and_uvs;
+use crate::map_file::Triangles;
 use crate::outcome::Failure;
 use crate::text::{self, counted};
 use seamstress_io::{Format, PolygonMesh, Polygons, read_mesh};
@@ -60,7 +60,7 @@ impl LoadedMesh {
     /// If the file cannot be read or is not a map. A mesh with faults is no error here.
     pub(crate) fn load_map(path: &Path) -> Result<(Self, Vec<[f64; 2]>), Failure> {
         let read = read_mesh(path)?;
-        let (_, corner_uvs) = faces_and_uvs(path, &read)?;
+        let corner_uvs = Triangles::of(path, &read)?.corner_uvs;
         Ok((Self::from_read(path, read, false), corner_uvs))
     }
 

@@ -15,7 +15,7 @@ impl MapFile {
     /// Reads an OBJ file with a texture coordinate at every corner of every triangle.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let read = read_mesh(path)?;
-        let (faces, corner_uvs) = faces_and_uvs(path, &read)?;
+        let Triangles { faces, corner_uvs } = Triangles::of(path, &read)?;
         Ok(Self { soup: TriangleSoup { positions: read.positions, faces }, corner_uvs })
     }
 }
@@ -30,31 +30,34 @@ fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
 }
 
 /// The triangles of a map and the UVs of their corners.
-///
-/// # Errors
-/// If a corner has no UV, or a face is not a triangle.
-pub(crate) fn faces_and_uvs(
-    path: &Path,
-    read: &PolygonMesh,
-) -> Result<(Vec<[u32; 3]>, Vec<[f64; 2]>), Failure> {
-    let corner_uvs = corner_uvs(read).ok_or_else(|| {
-        let mut text = String::from(
-            "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
-        );
-        for note in &read.notes {
-            text += &format!("\nnote: {note}");
-        }
-        bad_map(path, &text)
-    })?;
-    let faces: Option<Vec<[u32; 3]>> =
-        read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
-    let Some(faces) = faces else {
-        let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
-        let text = format!(
-            "face {} is not a triangle; the faces of a map are the triangles of its mesh",
-            larger.unwrap_or_default()
-        );
-        return Err(bad_map(path, &text));
-    };
-    Ok((faces, corner_uvs))
+pub(crate) struct Triangles {
+    faces: Vec<[u32; 3]>,
+    pub(crate) corner_uvs: Vec<[f64; 2]>,
+}
+
+impl Triangles {
+    /// # Errors
+    /// If a corner has no UV, or a face is not a triangle.
+    pub(crate) fn of(path: &Path, read: &PolygonMesh) -> Result<Self, Failure> {
+        let corner_uvs = corner_uvs(read).ok_or_else(|| {
+            let mut text = String::from(
+                "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
+            );
+            for note in &read.notes {
+                text += &format!("\nnote: {note}");
+            }
+            bad_map(path, &text)
+        })?;
+        let faces: Option<Vec<[u32; 3]>> =
+            read.polygons.iter().map(|polygon| <[u32; 3]>::try_from(polygon).ok()).collect();
+        let Some(faces) = faces else {
+            let larger = read.polygons.iter().position(|polygon| polygon.len() > 3);
+            let text = format!(
+                "face {} is not a triangle; the faces of a map are the triangles of its mesh",
+                larger.unwrap_or_default()
+            );
+            return Err(bad_map(path, &text));
+        };
+        Ok(Self { faces, corner_uvs })
+    }
 }
