@@ -4,9 +4,10 @@
 //!
 //! [`cut`] -> [`rounding`] (alternating with [`layout`]) -> exact [`layout`] -> [`map`]
 //!
-//! [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
+//! A [`field`] can take the place of the first two. [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
 
 pub mod cut;
+pub mod field;
 pub mod layout;
 pub mod map;
 mod pipeline;
@@ -16,5 +17,8 @@ pub mod quarter;
 pub mod rounding;
 
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
-pub use pipeline::{ComponentStats, MapError, MapOptions, MapSolution, StageStats, make_map};
+pub use pipeline::{
+    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats, Start,
+    UncertifiedMap, make_field_map, make_map, make_map_from,
+};
 pub use progress::{Observer, Progress, Stage};

@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// It is a linear function of the corner angles, which makes seam rotations comparable between metrics
 /// and liftable: two layouts that differ by full turns get different numbers.
-fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
+pub(crate) fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
     let mut heading = FaceData::filled(mesh.n_faces(), 0.0);
     for &f in &tree.order {
         let Some(h) = tree.parent[f] else { continue };
@@ -22,7 +22,7 @@ fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
 }
 
 /// Direction of a half-edge against the first one of its face, radians.
-fn turning(metric: &Metric, h: Halfedge) -> f64 {
+pub(crate) fn turning(metric: &Metric, h: Halfedge) -> f64 {
     let [_, second, third] = h.face().halfedges();
     match h.side() {
         0 => 0.0,

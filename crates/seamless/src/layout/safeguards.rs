@@ -6,6 +6,7 @@ use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use crate::cut::{DualTree, curvature_weight};
+use crate::field::{PrescriptionError, SmoothError};
 use crate::map::Violations;
 use crate::progress::{Cancelled, Watch};
 use crate::rounding::MatchedCut;
@@ -17,6 +18,8 @@ use seamstress_surface::{HalfedgeData, Metric, TriMesh};
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Route {
+    /// The Poisson layout of a field, or local/global iterations from it; it may have flips.
+    Poisson,
     /// The isometric layout itself: there was no seam to close.
     Isometric,
     /// As-rigid-as-possible iterations in the exact space.
@@ -39,6 +42,7 @@ pub enum Route {
 impl std::fmt::Display for Route {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Route::Poisson => f.write_str("Poisson layout"),
             Route::Isometric => f.write_str("isometric layout"),
             Route::Rigid => f.write_str("rigid layout"),
             Route::Untangled => f.write_str("rigid layout, untangled"),
@@ -76,6 +80,9 @@ pub enum LayoutError {
     /// The layout stood, but its UVs did not pass the certificate (ids of the component).
     #[error("the component's map failed its certificate: {0}")]
     Uncertified(Violations),
+    /// The cones prescribed cannot be had beside free ones (ids of the component).
+    #[error(transparent)]
+    Cones(#[from] PrescriptionError),
     /// A linear system could not be solved.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),
@@ -86,6 +93,15 @@ impl From<HomotopyError> for LayoutError {
         match error {
             HomotopyError::Cancelled(cancelled) => cancelled.into(),
             HomotopyError::Numeric(numeric) => numeric.into(),
+        }
+    }
+}
+
+impl From<SmoothError> for LayoutError {
+    fn from(error: SmoothError) -> Self {
+        match error {
+            SmoothError::Cancelled(cancelled) => cancelled.into(),
+            SmoothError::Numeric(numeric) => numeric.into(),
         }
     }
 }

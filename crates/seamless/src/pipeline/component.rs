@@ -1,13 +1,13 @@
-//! The direct method on one connected mesh.
+//! A certified map of one connected mesh.
 
 use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
+use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
-use crate::cut::{DualTree, curvature_weight};
-use crate::layout::safeguards::{Laid, LayoutError, lay_out, way_back};
+use crate::layout::exact::ExactLayout;
+use crate::layout::safeguards::{LayoutError, lay_out, way_back};
 use crate::map::{SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
-use crate::rounding::{MatchedCut, repair, round};
 use num_complex::Complex64;
 use seamstress_surface::{Component, Halfedge, Metric, TriMesh};
 use std::time::Instant;
@@ -20,6 +20,7 @@ const EXPONENTS: [f64; 3] = [1.0, 0.5, 0.3];
 pub(super) fn map_component(
     piece: &Component,
     positions: &[[f64; 3]],
+    start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
@@ -27,7 +28,7 @@ pub(super) fn map_component(
     let metric = Metric::from_positions(&piece.mesh, &positions);
     let mut first_failure = None;
     for exponent in EXPONENTS {
-        match solve(&piece.mesh, &metric, exponent, options, watch) {
+        match solve(&piece.mesh, &metric, exponent, start, options, watch) {
             Ok(solved) => return Ok(solved),
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(failure) => first_failure = first_failure.or(Some(failure)),
@@ -36,12 +37,13 @@ pub(super) fn map_component(
     Err(first_failure.unwrap_or(LayoutError::Defective(Default::default())))
 }
 
-/// Cut, round, lay out, clean up: the direct method in the metric with lengths to the given exponent,
+/// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the given exponent,
 /// and back to the plain metric.
 fn solve(
     mesh: &TriMesh,
     plain: &Metric,
     exponent: f64,
+    start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
@@ -49,21 +51,18 @@ fn solve(
 
     watch.enter(Stage::Cut)?;
     let metric = if exponent < 1.0 { plain.snowflake(mesh, exponent) } else { plain.clone() };
-    let tree = DualTree::lightest(mesh, curvature_weight(mesh, &metric));
-    let mut matched = MatchedCut::new(mesh, &metric, tree);
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
-    let (frames, rounding) = round(mesh, &metric, &mut matched, &options.rounding, watch)?;
-    let (repaired_seams, _) = repair(mesh, &metric, &mut matched);
-    clock.lap(Stage::Rounding, rounding.layouts);
+    let begun = start.begin(mesh, &metric, options, watch)?;
+    clock.lap(Stage::Rounding, begun.layouts);
 
     watch.enter(Stage::Layout)?;
-    let laid = lay_out(mesh, &metric, matched, Some(&frames), watch)?;
+    let laid = lay_out(mesh, &metric, begun.matched, Some(&begun.frames), watch)?;
     let mut finished = Finished::new(laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
-    if options.cone_price > 0.0 {
+    if options.cone_price > 0.0 && start.leaves_cones_free() {
         watch.enter(Stage::CleanUp)?;
         let (better, iterations) = fewer_cones(mesh, &metric, finished, options.cone_price, watch)?;
         finished = better;
@@ -71,10 +70,10 @@ fn solve(
     }
 
     let mut laid = finished.laid;
-    let mut candidates = vec![corner_uvs(mesh, plain, &laid)];
+    let mut candidates = vec![corner_uvs(mesh, plain, &laid.layout, &laid.y)];
     if exponent < 1.0 {
         laid.y = way_back(mesh, plain, &mut laid.layout, laid.y, exponent, watch)?;
-        candidates.push(corner_uvs(mesh, plain, &laid));
+        candidates.push(corner_uvs(mesh, plain, &laid.layout, &laid.y));
     }
     // The thinnest triangles may flip when the result is scaled and moved: look at what is given out.
     let certify = |uvs: &Vec<_>| SeamlessMap::certify(mesh, uvs.clone(), &options.tolerance);
@@ -93,37 +92,42 @@ fn solve(
         boundary_loops: mesh.n_boundary_loops(),
         route: laid.route,
         metric_exponent: exponent,
-        rounding_rounds: rounding.rounds,
-        repaired_seams,
+        rounding_rounds: begun.rounds,
+        repaired_seams: begun.shifted_seams,
         stages: clock.laps,
     };
     Ok((uvs, stats))
 }
 
 /// UVs per corner in mesh units at the best global scale, the lower left corner of their box at zero.
-fn corner_uvs(mesh: &TriMesh, plain: &Metric, laid: &Laid) -> Vec<[f64; 2]> {
-    let mut y = laid.y.clone();
-    laid.layout.rescale(&mut y);
-    let z = laid.layout.expand(&y);
+pub(super) fn corner_uvs(
+    mesh: &TriMesh,
+    plain: &Metric,
+    layout: &ExactLayout,
+    y: &[f64],
+) -> Vec<[f64; 2]> {
+    let mut y = y.to_vec();
+    layout.rescale(&mut y);
+    let z = layout.expand(&y);
     let low =
         |coordinate: fn(&Complex64) -> f64| z.iter().map(coordinate).fold(f64::INFINITY, f64::min);
     let corner = Complex64::new(low(|z| z.re), low(|z| z.im));
-    let uv = |h: Halfedge| (z[laid.layout.cut.wedge[h] as usize] - corner) * plain.unit;
+    let uv = |h: Halfedge| (z[layout.cut.wedge[h] as usize] - corner) * plain.unit;
     mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect()
 }
 
 /// Seconds and iterations by stage.
-struct Clock {
+pub(super) struct Clock {
     start: Instant,
-    laps: Vec<StageStats>,
+    pub(super) laps: Vec<StageStats>,
 }
 
 impl Clock {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { start: Instant::now(), laps: Vec::new() }
     }
 
-    fn lap(&mut self, stage: Stage, iterations: usize) {
+    pub(super) fn lap(&mut self, stage: Stage, iterations: usize) {
         let seconds = self.start.elapsed().as_secs_f64();
         self.laps.push(StageStats { stage, seconds, iterations });
         self.start = Instant::now();

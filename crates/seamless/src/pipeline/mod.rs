@@ -1,9 +1,15 @@
 //! The direct method from mesh to certified map.
 
+mod baseline;
 mod component;
 mod fewer_cones;
 mod finish;
+mod start;
 
+pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
+pub use start::Start;
+
+use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{SeamlessMap, Tolerance, Violations};
@@ -113,12 +119,18 @@ pub enum MapError {
         #[source]
         cause: LayoutError,
     },
+    /// The field to start from is none of this mesh.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// The cones asked for, or those of the field to start from, cannot be had.
+    #[error(transparent)]
+    Cones(#[from] PrescriptionError),
     /// The result did not pass the certificate. Nothing is returned then.
     #[error("the map failed its certificate: {0}")]
     Uncertified(#[from] Violations),
 }
 
-/// Makes a seamless map of every component of a mesh.
+/// Makes a seamless map of every component of a mesh, by the direct method.
 ///
 /// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
 /// Dirichlet energy, components side by side. The observer is called in every iteration of
@@ -135,17 +147,43 @@ pub fn make_map(
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    let (expected, found) = (mesh.n_vertices(), positions.len());
-    if expected != found {
-        return Err(MapError::PositionCount { expected, found });
-    }
-    // Vertices without a face may lie anywhere.
-    let strange = |v: &Vertex| {
-        mesh.outgoing(*v).next().is_some() && !positions[v.at()].iter().all(|x| x.is_finite())
-    };
-    if let Some(Vertex(vertex)) = mesh.vertices().find(strange) {
-        return Err(MapError::NonFinitePosition { vertex });
-    }
+    make_map_from(mesh, positions, &Start::Mesh, options, observer)
+}
+
+/// Makes a seamless map from what the caller has: a cross field, or cones; otherwise as [`make_map`].
+///
+/// The map has exactly the cones of the field, or those prescribed. Clean-up, which would change them, is
+/// left out.
+///
+/// # Errors
+/// [`MapError`]; never an uncertified map.
+pub fn make_map_from(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    start: &Start,
+    options: &MapOptions,
+    observer: &mut Observer<'_>,
+) -> Result<MapSolution, MapError> {
+    start.check(mesh)?;
+    let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
+        map_component(piece, positions, &start.restrict(piece), options, watch)
+    })?;
+    let metric = Metric::from_positions(mesh, positions);
+    let distortion = distortion(mesh, &metric, &corner_uvs);
+    let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
+    Ok(MapSolution { map, distortion, components })
+}
+
+type Piecewise<S> = Result<(Vec<[f64; 2]>, S), LayoutError>;
+
+/// Lays out each component for itself and puts the UVs side by side.
+fn by_component<S>(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    observer: &mut Observer<'_>,
+    mut lay_out: impl FnMut(&Component, &mut Watch<'_, '_>) -> Piecewise<S>,
+) -> Result<(Vec<[f64; 2]>, Vec<S>), MapError> {
+    check_positions(mesh, positions)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
@@ -161,16 +199,27 @@ pub fn make_map(
             },
             cause => MapError::Component { component: k, face: piece.faces[0].0, cause },
         };
-        let (uvs, piece_stats) =
-            map_component(piece, positions, options, &mut watch).map_err(fail)?;
+        let (uvs, piece_stats) = lay_out(piece, &mut watch).map_err(fail)?;
         left_edge = place(piece, &uvs, left_edge, &mut corner_uvs);
         stats.push(piece_stats);
     }
     Watch::new(observer, pieces.len().saturating_sub(1), pieces.len()).enter(Stage::Certificate)?;
-    let metric = Metric::from_positions(mesh, positions);
-    let distortion = distortion(mesh, &metric, &corner_uvs);
-    let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    Ok(MapSolution { map, distortion, components: stats })
+    Ok((corner_uvs, stats))
+}
+
+fn check_positions(mesh: &TriMesh, positions: &[[f64; 3]]) -> Result<(), MapError> {
+    let (expected, found) = (mesh.n_vertices(), positions.len());
+    if expected != found {
+        return Err(MapError::PositionCount { expected, found });
+    }
+    // Vertices without a face may lie anywhere.
+    let strange = |v: &Vertex| {
+        mesh.outgoing(*v).next().is_some() && !positions[v.at()].iter().all(|x| x.is_finite())
+    };
+    match mesh.vertices().find(strange) {
+        Some(Vertex(vertex)) => Err(MapError::NonFinitePosition { vertex }),
+        None => Ok(()),
+    }
 }
 
 /// Defects of a component in the ids of the whole mesh.
