@@ -13,15 +13,24 @@ use seamstress_surface::{HalfedgeData, Metric, TriMesh};
 
 /// The matchings of a field over an all-seam cut of a connected mesh, and the frames in its gauge.
 ///
-/// Lifts carry over as they are: a gauge of whole quarters changes neither the index of a vertex nor that
-/// of a loop.
+/// A gauge of whole quarters changes neither the index of a vertex nor that of a loop, so lifts carry over
+/// but for one convention: the isometric layout has no rotation across its tree, while rotations of
+/// independent faces are read from the left half-edge and come out a full turn larger where the parent
+/// face is on the right.
 pub fn matched_cut(
     mesh: &TriMesh,
     metric: &Metric,
     field: &CrossField,
 ) -> (MatchedCut, Vec<Complex64>) {
     let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
-    let (moved, gauge) = regauge(mesh, &tree, field.matching());
+    let mut full = field.matching().clone();
+    for (parent, child) in tree.parent.iter().filter_map(|h| Some(((*h)?, mesh.twin((*h)?)?))) {
+        if child < parent {
+            full[child] -= 4;
+            full[parent] += 4;
+        }
+    }
+    let (moved, gauge) = regauge(mesh, &tree, &full);
     let mut matched = MatchedCut::new(mesh, metric, tree);
     for (r, &h) in matched.matching.iter_mut().zip(&matched.cut.seams) {
         *r = moved[h];
