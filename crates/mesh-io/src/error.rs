@@ -127,6 +127,16 @@ pub enum ReadErrorKind {
         /// What follows.
         found: String,
     },
+    /// The file is for another mesh.
+    #[error("the file is for {found} {what}, and the mesh has {expected}")]
+    OtherMesh {
+        /// What is counted, such as `faces`.
+        what: &'static str,
+        /// Of the mesh.
+        expected: usize,
+        /// In the file.
+        found: String,
+    },
     /// A correct file of a kind that is not read.
     #[error("{what}")]
     Unsupported {

@@ -8,8 +8,11 @@
 //!
 //! [`read_pairs`] and [`read_sharp`] read files that name feature edges, in the same manner.
 //!
-//! [`write_map_obj`], [`write_singularities`] and [`Polymesh`] write results, and [`AtomicFile`] puts a file in
-//! place only when it is complete.
+//! Fields on a mesh are read and written as `.rawfield` and `.rosy` ([`read_field`]), cones as `.sing` or
+//! angles ([`read_cones`]), matchings as `.matching` ([`read_matching`]).
+//!
+//! [`write_map_obj`] writes maps, [`Polymesh`] polygons, and [`AtomicFile`] puts a file in place only when it
+//! is complete.
 //!
 //! The readers are our own because `tobj`, `ply-rs` and `stl_io` do not tell the line or byte of a
 //! fault and trust the counts in a header.
@@ -28,11 +31,15 @@
 //! ```
 
 mod atomic;
+mod cones;
 mod error;
 mod feature_lines;
+mod field;
 mod format;
+mod matching;
 mod mesh;
 mod note;
+mod numbers;
 mod obj;
 mod obj_index;
 mod off;
@@ -46,11 +53,14 @@ mod write;
 mod write_polygons;
 
 pub use atomic::{AtomicFile, WriteError};
+pub use cones::{Cones, parse_cones, read_cones, write_singularities};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
 pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};
+pub use field::{Directions, parse_rawfield, parse_rosy, read_field, write_rawfield, write_rosy};
 pub use format::Format;
+pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{CornerUvs, PolygonMesh, Polygons};
 pub use note::Note;
 pub use read::{parse_mesh, read_mesh};
-pub use write::{MapObj, write_map_obj, write_singularities};
+pub use write::{MapObj, write_map_obj};
 pub use write_polygons::Polymesh;

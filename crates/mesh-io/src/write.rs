@@ -1,4 +1,4 @@
-//! Writing maps and singularities as text.
+//! Writing maps as text.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -95,23 +95,6 @@ impl fmt::Display for Number {
     }
 }
 
-/// Writes singularities in the `.sing` format: `degree count`, then an element (from 0) and its index,
-/// in units of 1/`degree`, per line.
-///
-/// # Errors
-/// Of the writer.
-pub fn write_singularities(
-    writer: &mut impl Write,
-    degree: u32,
-    singularities: &[(u32, i32)],
-) -> io::Result<()> {
-    writeln!(writer, "{degree} {}", singularities.len())?;
-    for (element, index) in singularities {
-        writeln!(writer, "{element} {index}")?;
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,12 +170,5 @@ mod tests {
             refused(&MapObj { positions: &far, ..good }),
             "the position of vertex 0 is not finite"
         );
-    }
-
-    #[test]
-    fn singularities_are_rows() {
-        let mut bytes = Vec::new();
-        write_singularities(&mut bytes, 4, &[(0, 1), (17, -1)]).unwrap();
-        assert_eq!(bytes, b"4 2\n0 1\n17 -1\n");
     }
 }

@@ -18,7 +18,7 @@ pub mod rounding;
 
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
-    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats, Start,
-    UncertifiedMap, make_field_map, make_map, make_map_from,
+    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,
+    Start, UncertifiedMap, make_field_map, make_map, make_map_from,
 };
 pub use progress::{Observer, Progress, Stage};

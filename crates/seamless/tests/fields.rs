@@ -5,8 +5,7 @@ mod common;
 use common::{assert_seamless, mapped, mesh_of, surface};
 use seamstress::field::{
     ConePrescription, CrossField, FieldError, Homology, PrescriptionError, directions_in_space,
-    extract, frames_from_directions, map_indices, matched_cut, matchings_from_rows,
-    residual_field,
+    extract, frames_from_directions, map_indices, matched_cut, matchings_from_rows, residual_field,
 };
 use seamstress::{MapError, MapOptions, MapSolution, Start, make_map_from};
 use seamstress_surface::soup::TriangleSoup;
@@ -80,10 +79,7 @@ fn a_map_of_the_field_of_a_map_has_the_same_cones_and_loop_indices() {
         assert_seamless(&soup, &second);
         assert_eq!(cones(&second), cones(&first));
         let (_, _, again) = field_of(&soup, &second);
-        assert_eq!(
-            loop_indices(&mesh, &homology, &again),
-            loop_indices(&mesh, &homology, &field)
-        );
+        assert_eq!(loop_indices(&mesh, &homology, &again), loop_indices(&mesh, &homology, &field));
         assert_eq!(again.node_indices(&mesh, &homology), field.node_indices(&mesh, &homology));
     }
 }
@@ -172,10 +168,7 @@ fn matchings_alone_or_with_frames_give_the_field_back() {
         assert_eq!(same.indices(&mesh), field.indices(&mesh));
         let alone = residual_field(&mesh, &metric, field.matching()).unwrap();
         assert_eq!(alone.indices(&mesh), field.indices(&mesh));
-        assert_eq!(
-            loop_indices(&mesh, &homology, &alone),
-            loop_indices(&mesh, &homology, &field)
-        );
+        assert_eq!(loop_indices(&mesh, &homology, &alone), loop_indices(&mesh, &homology, &field));
     }
 }
 
@@ -343,7 +336,13 @@ fn fields_that_no_map_follows_are_refused_by_name() {
     matching[t] -= 6;
     let broken = CrossField::new(&mesh, field.frames().clone(), matching).unwrap();
     let error = start(&soup, &Start::Field(broken)).unwrap_err();
-    assert!(matches!(error, MapError::Cones(PrescriptionError::NoAngle { .. } | PrescriptionError::Valence { .. })), "{error}");
+    assert!(
+        matches!(
+            error,
+            MapError::Cones(PrescriptionError::NoAngle { .. } | PrescriptionError::Valence { .. })
+        ),
+        "{error}"
+    );
     let other = kit::cube();
     let error = start(&other, &Start::Field(field)).unwrap_err();
     assert!(matches!(error, MapError::Field(FieldError::Count { .. })), "{error}");

@@ -4,9 +4,7 @@ mod common;
 
 use common::{mapped, surface};
 use microlp::{ComparisonOp, OptimizationDirection, Problem};
-use seamstress::field::{
-    CrossField, Homology, LiftError, NodeIndices, extract, lift, map_indices,
-};
+use seamstress::field::{CrossField, Homology, LiftError, NodeIndices, extract, lift, map_indices};
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{HalfedgeData, TriMesh};
 use seamstress_testkit as kit;
@@ -76,7 +74,8 @@ impl Case {
     fn by_program(&self) -> Option<HalfedgeData<i32>> {
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let edges: Vec<_> = self.mesh.interior_edges().collect();
-        let mut variable: HalfedgeData<Option<(microlp::Variable, f64)>> = HalfedgeData::filled(self.mesh.n_halfedges(), None);
+        let mut variable: HalfedgeData<Option<(microlp::Variable, f64)>> =
+            HalfedgeData::filled(self.mesh.n_halfedges(), None);
         let mut conditions: Vec<Vec<(microlp::Variable, f64)>> =
             vec![Vec::new(); self.homology.n_nodes()];
         for &h in &edges {

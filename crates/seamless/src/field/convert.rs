@@ -83,8 +83,7 @@ pub fn matchings_from_rows(
         let is_named = |h: &seamstress_surface::Halfedge| {
             let mut both = ends(mesh, *h);
             both.sort_unstable();
-            both == sorted
-                && mesh.twin(*h).is_some_and(|t| i64::from(t.face().0) == faces[1])
+            both == sorted && mesh.twin(*h).is_some_and(|t| i64::from(t.face().0) == faces[1])
         };
         let h = face.halfedges().into_iter().find(is_named).ok_or_else(|| bad(false))?;
         let t = mesh.twin(h).ok_or_else(|| bad(false))?;

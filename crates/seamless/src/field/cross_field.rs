@@ -196,10 +196,7 @@ fn check_frames(mesh: &TriMesh, frames: &FaceData<Complex64>) -> Result<(), Fiel
 }
 
 /// Values of left half-edges, negated on their twins, zero on the boundary.
-pub(super) fn antisymmetric(
-    mesh: &TriMesh,
-    value: impl Fn(Halfedge) -> i32,
-) -> HalfedgeData<i32> {
+pub(super) fn antisymmetric(mesh: &TriMesh, value: impl Fn(Halfedge) -> i32) -> HalfedgeData<i32> {
     let mut all = HalfedgeData::filled(mesh.n_halfedges(), 0);
     for h in mesh.interior_edges() {
         if let Some(t) = mesh.twin(h) {

@@ -58,11 +58,7 @@ pub fn extract(
 }
 
 /// Rotation of each triangle's Jacobian, given one UV per corner.
-pub fn map_frames(
-    mesh: &TriMesh,
-    metric: &Metric,
-    corner_uvs: &[[f64; 2]],
-) -> FaceData<Complex64> {
+pub fn map_frames(mesh: &TriMesh, metric: &Metric, corner_uvs: &[[f64; 2]]) -> FaceData<Complex64> {
     let frame = |f: seamstress_surface::Face| {
         let [a, b, c] = f.halfedges().map(|h| point(corner_uvs, h));
         let [_, p, q] = metric.flat[f];

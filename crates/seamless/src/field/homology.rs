@@ -161,7 +161,8 @@ fn tree(
 ) -> (Vec<Branch>, Vec<u32>, Vec<bool>) {
     let mut at = vec![Vec::new(); n_nodes];
     for (k, &h) in free.iter().enumerate() {
-        if let (Some(a), Some(b), Some(t)) = (node[mesh.origin(h)], node[mesh.tip(h)], mesh.twin(h)) {
+        if let (Some(a), Some(b), Some(t)) = (node[mesh.origin(h)], node[mesh.tip(h)], mesh.twin(h))
+        {
             // To walk from a to b, the half-edge that leaves b.
             at[a as usize].push((b, t, k));
             at[b as usize].push((a, h, k));

@@ -19,7 +19,9 @@ pub enum LiftError {
         expected: i32,
     },
     /// The same for a loop.
-    #[error("loop {index} has index {found} and cannot get {expected}: they differ by no full turn")]
+    #[error(
+        "loop {index} has index {found} and cannot get {expected}: they differ by no full turn"
+    )]
     Loop {
         /// The loop.
         index: usize,
@@ -72,7 +74,8 @@ pub fn lift(
         let Some(t) = mesh.twin(h) else { continue };
         (k[h], k[t]) = (turns, -turns);
         // A full turn more on a half-edge takes 4 from the index of its origin.
-        if let (Some(a), Some(b)) = (homology.nodes()[mesh.origin(h)], homology.nodes()[mesh.tip(h)])
+        if let (Some(a), Some(b)) =
+            (homology.nodes()[mesh.origin(h)], homology.nodes()[mesh.tip(h)])
         {
             excess[a as usize] -= turns;
             excess[b as usize] += turns;

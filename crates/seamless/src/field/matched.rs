@@ -1,8 +1,8 @@
 //! From a cross field to a matched cut, where layouts begin.
 
+use super::FieldError;
 use super::cross_field::CrossField;
 use super::frames_of_matchings::spectral_frames;
-use super::FieldError;
 use crate::cut::{DualTree, curvature_weight};
 use crate::layout::space::regauge;
 use crate::quarter::turn;

@@ -152,8 +152,7 @@ impl Rounding {
     }
 
     fn solve(&mut self, matched: &MatchedCut) -> Result<(), NotPositiveDefinite> {
-        let target: Vec<f64> =
-            (0..self.held.len()).map(|e| self.target(matched, e)).collect();
+        let target: Vec<f64> = (0..self.held.len()).map(|e| self.target(matched, e)).collect();
         let held = &self.held;
         let weight = |e: usize| if held[e] { 1.0 } else { 0.0 };
         self.angles = nearest_angles(&mut self.matrix, weight, |e| target[e])?;
