@@ -5,9 +5,11 @@ mod check;
 mod extract;
 mod faults;
 mod features;
+mod field;
 mod input;
 mod job;
 mod layout_quads;
+mod made;
 mod map;
 mod map_file;
 mod outcome;
@@ -17,6 +19,7 @@ mod progress;
 mod quad_file;
 mod quality;
 mod report;
+mod start;
 mod stop;
 mod summary;
 mod system;
@@ -33,6 +36,7 @@ fn main() -> ExitCode {
         Command::Map(args) => map::run(args),
         Command::Check(args) => check::run(args),
         Command::Extract(args) => extract::run(args),
+        Command::Field(args) => field::run(args),
         Command::LayoutQuads(args) => layout_quads::run(args),
         Command::Quality(args) => quality::run(args),
     };

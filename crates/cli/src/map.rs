@@ -1,29 +1,36 @@
 //! `seamstress map`.
 
-use crate::args::MapArgs;
+use crate::args::{MapArgs, Method, StartArgs};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
+use crate::made::{self, Made};
 use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, Cost, MapReport, VERSION};
+use crate::start::read_start;
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::{MapError, MapSolution, make_map};
+use seamstress::{FieldMapOptions, MapError, make_field_map, make_map_from};
 use seamstress_io::{MapObj, write_map_obj, write_singularities};
+use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// The work done, and nothing written yet.
 struct Product {
     mesh: LoadedMesh,
-    solution: MapSolution,
+    made: Made,
     pictures: Option<[Vec<u8>; 3]>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &MapArgs) -> Result<Status, Failure> {
     let job = Job::new(&args.run, &args.mesh)?;
+    if args.start.exact && args.start.method != Method::Field {
+        return Err(Failure::Usage("`--exact` goes with `--method field`".into()));
+    }
     let plan = plan(args)?;
     let owned = args.clone();
     let product = job.run(move |worker| make(&owned, worker))?;
@@ -37,10 +44,13 @@ fn plan(args: &MapArgs) -> Result<Plan, Failure> {
     if let Some(folder) = &args.pictures {
         targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
     }
-    targets.extend(args.cones.iter().map(|path| Target::new(Kind::Cones, path)));
+    targets.extend(args.sing.iter().map(|path| Target::new(Kind::Cones, path)));
     targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
     targets.push(Target::new(Kind::Map, &args.output));
-    Plan::new(&[&args.mesh], args.pictures.as_deref(), targets)
+    let start = &args.start;
+    let given = [&start.field, &start.matching, &start.cones].into_iter().flatten();
+    let inputs: Vec<&Path> = given.chain([&args.mesh]).map(PathBuf::as_path).collect();
+    Plan::new(&inputs, args.pictures.as_deref(), targets)
 }
 
 /// The part of the command that may take long.
@@ -50,25 +60,73 @@ fn make(args: &MapArgs, mut worker: Worker) -> Result<Product, Failure> {
         mesh.tell_findings();
     }
     let connectivity = mesh.connect()?;
-    let made = make_map(&connectivity, &mesh.soup.positions, &args.options(), &mut |progress| {
-        worker.observe(progress)
-    });
-    let solution = made.map_err(|cause| {
-        let file = mesh.path.clone();
-        match (cause, worker.stop.reason()) {
-            (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
-            (cause, _) => Failure::NoMap { file, cause },
+    let made = solve(args, &mesh, &connectivity, &mut worker).map_err(|failure| match failure {
+        Unmade::Failure(failure) => failure,
+        Unmade::Cause(cause) => {
+            let file = mesh.path.clone();
+            match (cause, worker.stop.reason()) {
+                (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+                (cause @ (MapError::Field(_) | MapError::Cones(_)), _) => {
+                    Failure::BadStart { file, text: cause.to_string() }
+                }
+                (cause, _) => Failure::NoMap { file, cause },
+            }
         }
     })?;
     worker.stop.lift_limit();
-    let pictures = match &args.pictures {
-        Some(_) => Some(pictures::draw(&mesh.soup, &solution.map, &args.texture)),
-        None => None,
+    let pictures = match (&args.pictures, made.certified()) {
+        (Some(_), Some(map)) => Some(pictures::draw(&mesh.soup, map, &args.texture)),
+        _ => None,
     };
     let pictures = pictures
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, solution, pictures })
+    Ok(Product { mesh, made, pictures })
+}
+
+/// Why there is no map to write.
+enum Unmade {
+    Failure(Failure),
+    Cause(MapError),
+}
+
+impl From<Failure> for Unmade {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
+    }
+}
+
+impl From<MapError> for Unmade {
+    fn from(cause: MapError) -> Self {
+        Self::Cause(cause)
+    }
+}
+
+/// The map by the method asked for.
+fn solve(
+    args: &MapArgs,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+    worker: &mut Worker,
+) -> Result<Made, Unmade> {
+    let positions = &mesh.soup.positions;
+    let mut observe = |progress| worker.observe(progress);
+    if !args.start.is_baseline() {
+        let start = read_start(&args.start, connectivity, positions)?;
+        let options = args.options();
+        let solution = make_map_from(connectivity, positions, &start, &options, &mut observe)?;
+        return Ok(Made::from(solution));
+    }
+    let options =
+        FieldMapOptions { iterations: args.start.local_global, ..FieldMapOptions::default() };
+    let made = Made::from(make_field_map(connectivity, positions, &options, &mut observe)?);
+    match made.violations() {
+        Some(violations) if !args.start.allow_flips => {
+            let file = mesh.path.clone();
+            Err(Failure::Uncertified { file, text: made::named(violations) }.into())
+        }
+        _ => Ok(made),
+    }
 }
 
 /// Writes everything, puts it in place and prints the summary.
@@ -82,10 +140,10 @@ fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(
     }
     for target in &plan.targets {
         batch.write(&target.path, |file| match target.kind {
-            Kind::Map | Kind::Quads => write_map(file, args, product),
             Kind::Cones => write_cones(file, product),
             Kind::Report => writeln!(file, "{report}"),
             Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),
+            _ => write_map(file, args, product),
         })?;
     }
     job.still_wanted()?;
@@ -99,7 +157,6 @@ fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(
 }
 
 fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> String {
-    let solution = &product.solution;
     report::to_text(&MapReport {
         seamstress: VERSION,
         command: "map",
@@ -108,54 +165,68 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
             "cone_bias": args.cone_bias,
             "cone_price": args.cone_price,
             "rounding": args.options().rounding.strategy,
+            "start": start_json(&args.start),
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
             "threads": args.run.threads,
         }),
         input: report::input_json(&product.mesh),
-        components: &solution.components,
-        map: report::map_json(&solution.map, &solution.distortion),
+        components: &product.made.components,
+        map: product.made.json(),
         files: &plan.targets,
         cost,
     })
 }
 
+fn start_json(start: &StartArgs) -> serde_json::Value {
+    let name =
+        |path: &Option<PathBuf>| path.as_ref().map(|path| path.to_string_lossy().into_owned());
+    json!({
+        "method": match start.method { Method::Direct => "direct", Method::Field => "field" },
+        "exact": start.exact,
+        "local_global": start.local_global,
+        "field": name(&start.field),
+        "matching": name(&start.matching),
+        "cones": name(&start.cones),
+        "free_cones": start.free_cones,
+    })
+}
+
 fn write_map(file: &mut impl Write, args: &MapArgs, product: &Product) -> std::io::Result<()> {
-    let solution = &product.solution;
+    let made = &product.made;
     let name = args.mesh.file_name().unwrap_or(args.mesh.as_os_str());
     let repaired = match product.mesh.repairs.len() {
         0 => String::new(),
         n => format!(", after {}", counted(n, "repair")),
     };
     let comments = [
-        format!("Seamless map by Seamstress {VERSION}"),
+        format!("{} by Seamstress {VERSION}", made.title()),
         format!("Source: {}{repaired}", name.display()),
         format!(
             "tau {}, symmetric Dirichlet energy {}, {}",
-            figure(report::tau(&solution.distortion)),
-            figure(solution.distortion.symmetric_dirichlet),
-            counted(solution.map.cones().len(), "cone"),
+            figure(report::tau(&made.distortion)),
+            figure(made.distortion.symmetric_dirichlet),
+            counted(made.cones().len(), "cone"),
         ),
     ];
     let map = MapObj {
         positions: &product.mesh.soup.positions,
         faces: &product.mesh.soup.faces,
-        corner_uvs: solution.map.corner_uvs(),
+        corner_uvs: made.corner_uvs(),
         comments: &comments,
     };
     write_map_obj(file, &map)
 }
 
 fn write_cones(file: &mut impl Write, product: &Product) -> std::io::Result<()> {
-    let cones = product.solution.map.cones();
+    let cones = product.made.cones();
     let rows: Vec<(u32, i32)> = cones.iter().map(|c| (c.vertex, c.index)).collect();
-    write_singularities(file, 4, &rows)
+    write_singularities(file, &rows)
 }
 
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
-    let solution = &product.solution;
     let mut rows = summary::mesh_rows(&product.mesh);
-    rows.extend(summary::map_rows(&solution.map, &solution.distortion));
-    rows.push(summary::cost_row(cost, &solution.components));
+    rows.extend(product.made.rows());
+    rows.push(summary::cost_row(cost, &product.made.components));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
     rows.push(row("written", &names.join(", ")));

@@ -58,6 +58,9 @@ pub(crate) enum Failure {
     /// A source of features names what is not there.
     #[error("{}: {text}", file.display())]
     BadFeatures { file: PathBuf, text: String },
+    /// A field, matchings or cones to start from that are not of the mesh, or that no map has.
+    #[error("{}: {text}", file.display())]
+    BadStart { file: PathBuf, text: String },
     #[error("{0}")]
     Usage(String),
     #[error(transparent)]
@@ -78,6 +81,12 @@ pub(crate) enum Failure {
         file.display()
     )]
     NoManifold { file: PathBuf, faults: QuadFaults },
+    #[error(
+        "{}: the layout of the field has {text}. Nothing was written.\n\
+         Lay it out with `--exact`, or take it as it is with `--allow-flips`",
+        file.display()
+    )]
+    Uncertified { file: PathBuf, text: String },
     #[error("{}: stopped: {reason}. Nothing was written", file.display())]
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
@@ -97,10 +106,12 @@ impl Failure {
             | Self::BadMap { .. }
             | Self::BadFeatures { .. }
             | Self::Undrawable { .. }
-            | Self::NoQuads { .. } => Status::BadInput,
+            | Self::NoQuads { .. }
+            | Self::BadStart { .. } => Status::BadInput,
             Self::Usage(_) | Self::Unwritable(_) | Self::Output { .. } => Status::WrongUsage,
             Self::NoManifold { .. }
             | Self::NoMap { .. }
+            | Self::Uncertified { .. }
             | Self::NoPicture { .. }
             | Self::Internal { .. } => Status::NoMap,
             Self::Stopped { .. } => Status::Stopped,

@@ -14,6 +14,8 @@ pub(crate) enum Kind {
     Quads,
     Report,
     Cones,
+    Field,
+    Matching,
     Picture,
 }
 

@@ -1,6 +1,6 @@
 //! Arguments of `map`.
 
-use super::{EXIT_CODES, RunArgs, TextureArgs, not_negative};
+use super::{EXIT_CODES, RunArgs, StartArgs, TextureArgs, not_negative};
 use seamstress::MapOptions;
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use std::path::PathBuf;
@@ -10,7 +10,10 @@ Examples:
   seamstress map bunny.ply -o bunny.obj
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
-  seamstress map part.off -o part.obj --json | jq .distortion.tau";
+  seamstress map part.off -o part.obj --json | jq .distortion.tau
+  seamstress map eight.off -o eight.obj --field eight.rawfield
+  seamstress map eight.off -o eight.obj --cones eight.sing --free-cones
+  seamstress map eight.off -o eight.obj --method field --allow-flips";
 
 /// Make a seamless map of a mesh
 ///
@@ -38,7 +41,10 @@ pub(crate) struct MapArgs {
 
     /// Write the cones to this file: vertex (counted from 0) and index in quarters of a turn
     #[arg(long, value_name = "FILE.sing")]
-    pub(crate) cones: Option<PathBuf>,
+    pub(crate) sing: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) start: StartArgs,
 
     /// Repair what can be repaired without moving a vertex, and map the repaired mesh
     ///

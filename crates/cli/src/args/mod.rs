@@ -3,15 +3,19 @@
 mod check;
 mod features;
 mod extract;
+mod field;
 mod map;
 mod quads;
+mod start;
 mod texture;
 
 pub(crate) use check::CheckArgs;
 pub(crate) use features::FeatureArgs;
 pub(crate) use extract::ExtractArgs;
+pub(crate) use field::FieldArgs;
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
+pub(crate) use start::{Method, StartArgs};
 pub(crate) use texture::TextureArgs;
 
 use clap::{Parser, Subcommand, value_parser};
@@ -19,8 +23,9 @@ use std::time::Duration;
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  done; any map written or checked is certified
-  1  the input is at fault: unreadable, not a mesh, or not a seamless map
+  0  done; any map written or checked is certified (unless written with `--allow-flips`)
+  1  the input is at fault: unreadable, not a mesh, not a seamless map, not a field of the mesh, or
+     cones that no map can have
   2  wrong usage: unknown option, or an output that cannot be written
   3  no certified map could be made, or its quads are no manifold; nothing is written
   4  stopped by the time limit or by Ctrl-C; nothing is written";
@@ -62,6 +67,7 @@ pub(crate) enum Command {
     Map(MapArgs),
     Check(CheckArgs),
     Extract(ExtractArgs),
+    Field(FieldArgs),
     LayoutQuads(LayoutQuadsArgs),
     Quality(QualityArgs),
 }

@@ -64,7 +64,7 @@ fn wrong_arguments_are_2() {
         &["map", "in.obj", "-o", "./in.obj"],
         &["map", "in.obj", "-o", "a.obj", "--report", "in.obj"],
         &["map", "in.obj", "-o", "a.obj", "--report", "a.obj"],
-        &["map", "in.obj", "-o", "a.obj", "--cones", "./a.obj"],
+        &["map", "in.obj", "-o", "a.obj", "--sing", "./a.obj"],
         &["map", "in.obj", "-o", "a.off"],
         &["check", "in.obj", "--tolerance", "1"],
     ];

@@ -54,7 +54,7 @@ fn every_output_is_written_and_agrees() {
         "new/deep/r.json",
         "--pictures",
         "new/deep",
-        "--cones",
+        "--sing",
         "cones.sing",
         "--json",
         "--threads",
