@@ -6,6 +6,7 @@ mod check;
 mod extract;
 mod failures;
 mod features;
+mod fields;
 mod harness;
 mod map;
 mod quads;

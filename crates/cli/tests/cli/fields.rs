@@ -1,0 +1,124 @@
+//! Fields and cones, from maps to files and back to maps.
+
+use crate::harness::{Folder, lines_of};
+use seamstress_testkit as testkit;
+use serde_json::Value;
+
+/// A sphere of 320 faces and its map, with field, cones and matchings in files.
+fn folder_with_field() -> Folder {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::bumpy(&testkit::icosphere(2), 0.1, 7));
+    folder.expect(0, &["map", "in.obj", "-o", "map.obj", "--sing", "map.sing"]);
+    let outputs = ["-o", "f.rawfield", "--sing", "f.sing", "--matching", "f.matching"];
+    let run = folder.expect(0, &[&["field", "in.obj", "map.obj"], &outputs[..]].concat());
+    assert!(run.stdout.contains("indices around handles: none"), "{}", run.stdout);
+    folder
+}
+
+#[test]
+fn a_field_leads_back_to_the_cones_it_came_from() {
+    let folder = folder_with_field();
+    let cones = folder.read("map.sing");
+    assert_eq!(folder.read("f.sing"), cones);
+    folder.expect(0, &["field", "in.obj", "map.obj", "-o", "f.rosy"]);
+    for start in [
+        &["--field", "f.rawfield"][..],
+        &["--field", "f.rosy"],
+        &["--field", "f.rawfield", "--matching", "f.matching"],
+        &["--matching", "f.matching"],
+        &["--cones", "f.sing"],
+    ] {
+        let arguments = [&["map", "in.obj", "-o", "again.obj", "--sing", "again.sing"], start];
+        let run = folder.expect(0, &arguments.concat());
+        assert!(run.stdout.contains("certificate  passed"), "{start:?}: {}", run.stdout);
+        assert_eq!(folder.read("again.sing"), cones, "{start:?}");
+        folder.expect(0, &["check", "in.obj", "again.obj"]);
+    }
+}
+
+#[test]
+fn some_cones_may_be_given_and_the_rest_left_free() {
+    let folder = folder_with_field();
+    folder.write("some.sing", "4 2\n0 1\n1 0\n");
+    let report = ["--report", "r.json", "--sing", "out.sing"];
+    let start = ["map", "in.obj", "-o", "a.obj", "--cones", "some.sing", "--free-cones"];
+    folder.expect(0, &[&start[..], &report].concat());
+    let out = folder.read("out.sing");
+    assert!(out.lines().any(|line| line == "0 1"), "{out}");
+    assert!(!out.lines().skip(1).any(|line| line.starts_with("1 ")), "{out}");
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    assert_eq!(report["options"]["start"]["free_cones"], true);
+    let refused = folder.expect(1, &start[..6]);
+    assert!(
+        refused.stderr.contains("have indices that sum to 1; they must sum to 8"),
+        "{refused:?}"
+    );
+}
+
+#[test]
+fn what_does_not_fit_the_mesh_is_named() {
+    let folder = folder_with_field();
+    folder.write_obj("cube.obj", &testkit::cube());
+    let refused = |start: &[&str]| {
+        let run = folder.expect(1, &[&["map", "cube.obj", "-o", "no.obj"], start].concat());
+        assert!(!folder.names().contains(&"no.obj".to_owned()));
+        run.stderr
+    };
+    let field = refused(&["--field", "f.rawfield"]);
+    assert!(
+        field.contains("f.rawfield, line 1: the file is for 320 faces, and the mesh has 12"),
+        "{field}"
+    );
+    assert!(refused(&["--matching", "f.matching"]).contains("line 1: the file is for 320 faces"));
+    assert!(
+        refused(&["--cones", "f.sing"]).contains("f.sing, line "),
+        "{}",
+        refused(&["--cones", "f.sing"])
+    );
+    folder.write("four.sing", "4 1\n3 4\n");
+    assert!(
+        refused(&["--cones", "four.sing"])
+            .contains("index 4 at vertex 3 would have no positive angle")
+    );
+    folder.write("wide.sing", "4 1\n3 -30\n");
+    assert!(refused(&["--cones", "wide.sing"]).contains("would need 34 quarter turns"));
+    folder.write("angles", "1\n".repeat(8));
+    assert!(refused(&["--cones", "angles"]).contains("is not a multiple of a quarter turn"));
+    let zero = "4 12\n".to_owned() + &"1 0 0 0 1 0 -1 0 0 0 -1 0\n".repeat(11) + &"0 ".repeat(12);
+    folder.write("zero.rawfield", zero);
+    let field = refused(&["--field", "zero.rawfield"]);
+    assert!(field.contains("no direction in the plane of face"), "{field}");
+    let usage = ["map", "cube.obj", "-o", "no.obj", "--cones", "angles", "--free-cones"];
+    assert!(folder.expect(2, &usage).stderr.contains("needs a .sing file"));
+    folder.expect(2, &["map", "cube.obj", "-o", "no.obj", "--exact"]);
+    folder.expect(2, &["map", "cube.obj", "-o", "no.obj", "--field", "f", "--cones", "c"]);
+    let other = folder.expect(1, &["field", "cube.obj", "map.obj", "-o", "no.rawfield"]);
+    assert!(other.stderr.contains("the map has 162 vertices, the source 8"), "{other:?}");
+}
+
+#[test]
+fn the_classical_way_is_certified_or_needs_leave_to_flip() {
+    let folder = Folder::new();
+    folder.write_obj("cube.obj", &testkit::cube());
+    let run = folder.expect(0, &["map", "cube.obj", "-o", "cube.map.obj", "--method", "field"]);
+    assert!(run.stdout.contains("certificate  passed"));
+    // Spikes on every face: the layout of any smooth field folds them.
+    folder
+        .write_obj("in.obj", &testkit::klee(&testkit::bumpy(&testkit::icosphere(1), 0.3, 1), 1.5));
+    let classical = ["map", "in.obj", "-o", "map.obj", "--method", "field"];
+    let refused = folder.expect(3, &classical);
+    assert!(refused.stderr.contains("flipped"), "{refused:?}");
+    assert!(refused.stderr.contains("`--exact`"), "{refused:?}");
+    assert!(!folder.names().contains(&"map.obj".to_owned()));
+    let flags = ["--allow-flips", "--report", "r.json"];
+    let run = folder.expect(0, &[&classical[..], &flags].concat());
+    assert!(run.stdout.contains("certificate  none: "), "{}", run.stdout);
+    assert!(folder.read("map.obj").starts_with("# Uncertified layout"));
+    assert_eq!(lines_of(&folder.read("map.obj"), "f").len(), 240);
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    assert!(report["certificate"].is_null());
+    assert!(!report["violations"].as_array().unwrap().is_empty());
+    folder.expect(1, &["check", "in.obj", "map.obj"]);
+    folder.expect(0, &[&classical[..], &["--exact"]].concat());
+    folder.expect(0, &["check", "in.obj", "map.obj"]);
+}
