@@ -77,10 +77,8 @@ fn flat_and_boxy_surfaces_have_parallel_fields() {
 #[test]
 fn a_classical_map_is_certified_or_says_what_is_wrong() {
     let (mut certified, mut flipped) = (0, 0);
-    // Spikes on every face, which the layout of a smooth field folds.
-    let rough = |seed| kit::klee(&kit::bumpy(&kit::icosphere(1), 0.3, seed), 1.5);
     let smooth = |seed| kit::random_surface(seed);
-    for soup in (0..4).map(rough).chain((0..4).map(smooth)) {
+    for soup in [40, 60].map(kit::crown).into_iter().chain((0..4).map(smooth)) {
         let result = classical(&soup, &FieldMapOptions::default());
         let faces = soup.faces.len();
         assert!(result.components.iter().all(|c| c.route == Route::Poisson));

@@ -24,7 +24,7 @@ pub use modify::{
 pub use patches::{annulus, cylinder, disk_grid, fan, graph, monkey_saddle, saddle};
 pub use random::random_surface;
 pub use rng::Rng;
-pub use solids::{cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
+pub use solids::{crown, cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
 pub use tori::{seven_vertex_torus, torus};
 pub use voxels::{double_torus, l_bracket, slab_with_holes, voxel_surface};
 

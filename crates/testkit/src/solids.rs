@@ -103,9 +103,21 @@ pub fn uv_sphere(n: u32, m: u32) -> TriangleSoup {
     TriangleSoup { positions, faces }
 }
 
+/// Two cones of height 3 over a zigzag of `n` ≥ 3 points, even, on the unit circle: poles of valence `n`
+/// and next to no angle, so that the layout of a smooth field folds.
+#[must_use]
+pub fn crown(n: u32) -> TriangleSoup {
+    let mut crown = uv_sphere(n, 2);
+    for (i, p) in crown.positions.iter_mut().enumerate() {
+        let is_pole = p[2].abs() > 0.5;
+        p[2] = if is_pole { 3.0 * p[2] } else { 0.3 * if i % 2 == 0 { 1.0 } else { -1.0 } };
+    }
+    crown
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
+    use super::{crown, cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
     use crate::testing::{six_volumes, sound, topology};
     use std::f64::consts::FRAC_PI_3;
 
@@ -131,6 +143,12 @@ mod tests {
             let (short, long) = (facts.min_edge_length.unwrap(), facts.max_edge_length.unwrap());
             assert!(long - short < 1e-14);
         }
+    }
+
+    #[test]
+    fn a_crown_is_a_sphere() {
+        assert_eq!(topology(&crown(8)), (2, 0, 0));
+        assert_eq!(crown(8).faces.len(), 16);
     }
 
     #[test]

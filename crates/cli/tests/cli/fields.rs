@@ -102,9 +102,7 @@ fn the_classical_way_is_certified_or_needs_leave_to_flip() {
     folder.write_obj("cube.obj", &testkit::cube());
     let run = folder.expect(0, &["map", "cube.obj", "-o", "cube.map.obj", "--method", "field"]);
     assert!(run.stdout.contains("certificate  passed"));
-    // Spikes on every face: the layout of any smooth field folds them.
-    folder
-        .write_obj("in.obj", &testkit::klee(&testkit::bumpy(&testkit::icosphere(1), 0.3, 1), 1.5));
+    folder.write_obj("in.obj", &testkit::crown(40));
     let classical = ["map", "in.obj", "-o", "map.obj", "--method", "field"];
     let refused = folder.expect(3, &classical);
     assert!(refused.stderr.contains("flipped"), "{refused:?}");
@@ -114,7 +112,7 @@ fn the_classical_way_is_certified_or_needs_leave_to_flip() {
     let run = folder.expect(0, &[&classical[..], &flags].concat());
     assert!(run.stdout.contains("certificate  none: "), "{}", run.stdout);
     assert!(folder.read("map.obj").starts_with("# Uncertified layout"));
-    assert_eq!(lines_of(&folder.read("map.obj"), "f").len(), 240);
+    assert_eq!(lines_of(&folder.read("map.obj"), "f").len(), 80);
     let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
     assert!(report["certificate"].is_null());
     assert!(!report["violations"].as_array().unwrap().is_empty());
