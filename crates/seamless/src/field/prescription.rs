@@ -82,8 +82,8 @@ pub enum PrescriptionError {
         /// What it must be.
         expected: i64,
     },
-    /// One cone of three quarters and one of five on a torus and no other; impossible by Jucovič and
-    /// Trenkler 1973 (see also Izmestiev et al. 2013).
+    /// One cone of three quarters and one of five on a torus and no other; impossible by
+    /// Izmestiev et al. 2013.
     #[error(
         "component {component} is a torus with cones of index +1 at vertex {plus} and -1 at vertex \
          {minus} only, which no seamless map has"
