@@ -12,7 +12,7 @@ use seamstress::field::{CrossField, Homology, directions_in_space, extract};
 use seamstress::map::compare_source;
 use seamstress::{SeamlessMap, Tolerance, Violations};
 use seamstress_io::{MatchingRow, write_matching, write_rawfield, write_rosy, write_singularities};
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_surface::{Halfedge, Metric, TriMesh};
 use serde_json::json;
 use std::io::{self, Write};
 
@@ -59,8 +59,7 @@ fn read_off(args: &FieldArgs) -> Result<Product, Failure> {
     if !violations.is_empty() {
         return Err(bad_map(Violations(violations).to_string()));
     }
-    let mut tolerance = Tolerance::default();
-    tolerance.seam = args.tolerance;
+    let tolerance = Tolerance { seam: args.tolerance, ..Tolerance::default() };
     let map = SeamlessMap::certify(&connectivity, read.corner_uvs, &tolerance)
         .map_err(|violations| bad_map(format!("not a seamless map: {violations}")))?;
     let metric = Metric::from_positions(&connectivity, &mesh.soup.positions);
@@ -85,11 +84,8 @@ fn write_field(file: &mut impl Write, args: &FieldArgs, product: &Product) -> io
 /// All edges, those of the boundary with -1 for the missing face.
 fn write_rows(file: &mut impl Write, product: &Product) -> io::Result<()> {
     let mesh = &product.connectivity;
-    let row = |h| MatchingRow {
-        faces: [
-            i64::from(seamstress_surface::Halfedge::face(h).0),
-            mesh.twin(h).map_or(-1, |t| i64::from(t.face().0)),
-        ],
+    let row = |h: Halfedge| MatchingRow {
+        faces: [i64::from(h.face().0), mesh.twin(h).map_or(-1, |t| i64::from(t.face().0))],
         vertices: [mesh.origin(h).0, mesh.tip(h).0],
         matching: product.field.matching()[h].rem_euclid(4),
     };

@@ -106,8 +106,8 @@ mod tests {
 
     #[test]
     fn angles_are_one_to_a_line() {
-        let read = parse_cones(b"6.28\n3.14\n", "c", 2).unwrap();
-        assert_eq!(read, Cones::Angles(vec![6.28, 3.14]));
+        let read = parse_cones(b"6.5\n3.25\n", "c", 2).unwrap();
+        assert_eq!(read, Cones::Angles(vec![6.5, 3.25]));
     }
 
     #[test]

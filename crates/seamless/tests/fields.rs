@@ -347,3 +347,19 @@ fn fields_that_no_map_follows_are_refused_by_name() {
     let error = start(&other, &Start::Field(field)).unwrap_err();
     assert!(matches!(error, MapError::Field(FieldError::Count { .. })), "{error}");
 }
+
+#[test]
+fn fields_of_random_surfaces_lead_back() {
+    for seed in 100..112 {
+        let soup = kit::random_surface(seed);
+        let first = mapped(&soup);
+        let (mesh, homology, field) = field_of(&soup, &first);
+        let second = start(&soup, &Start::Field(field.clone())).unwrap();
+        assert_eq!(cones(&second), cones(&first), "seed {seed}");
+        let (_, _, again) = field_of(&soup, &second);
+        let loops = |field| loop_indices(&mesh, &homology, field);
+        assert_eq!(loops(&again), loops(&field), "seed {seed}");
+        let nodes = |field: &CrossField| field.node_indices(&mesh, &homology);
+        assert_eq!(nodes(&again), nodes(&field), "seed {seed}");
+    }
+}
