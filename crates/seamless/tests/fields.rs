@@ -1,5 +1,7 @@
 //! Cross fields of maps, and maps of cross fields.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
+
 mod common;
 
 use common::{assert_seamless, mapped, mesh_of, surface};

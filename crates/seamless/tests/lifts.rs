@@ -1,5 +1,7 @@
 //! Eq. (13) of the seed by elimination, against the mixed-integer program as written.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
+
 mod common;
 
 use common::{mapped, surface};

@@ -1,5 +1,7 @@
 //! Smooth cross fields by rounding, and the classical maps that follow them.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
+
 mod common;
 
 use common::{assert_seamless, mesh_of, surface, unwatched};
