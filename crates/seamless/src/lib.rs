@@ -8,6 +8,7 @@
 
 pub mod cut;
 pub mod field;
+pub mod features;
 pub mod layout;
 pub mod map;
 mod pipeline;
@@ -16,6 +17,7 @@ pub mod quality;
 pub mod quarter;
 pub mod rounding;
 
+pub use features::{FeatureEdges, FeatureError};
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,
