@@ -37,7 +37,9 @@ impl Target {
         let (what, formats, endings) = match self.kind {
             Kind::Map => ("maps", &[Format::Obj][..], "OBJ"),
             Kind::Quads => ("quad meshes", &[Format::Obj, Format::Ply][..], "OBJ or PLY"),
-            Kind::Report | Kind::Cones | Kind::Picture => return Ok(()),
+            Kind::Report | Kind::Cones | Kind::Field | Kind::Matching | Kind::Picture => {
+                return Ok(());
+            }
         };
         match Format::from_path(&self.path) {
             Some(format) if !formats.contains(&format) => {

@@ -17,10 +17,10 @@ pub mod quality;
 pub mod quarter;
 pub mod rounding;
 
-pub use features::{FeatureEdges, FeatureError};
+pub use features::{FeatureEdges, FeatureError, ReleaseReason, ReleasedFeature, Sectors};
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,
-    Start, UncertifiedMap, make_field_map, make_map, make_map_from,
+    Start, UncertifiedMap, make_aligned_map, make_field_map, make_map, make_map_from,
 };
 pub use progress::{Observer, Progress, Stage};

@@ -4,6 +4,7 @@
 mod common;
 
 use common::{real_indices, surface, unwatched};
+use seamstress::Sectors;
 use seamstress::cut::{Cut, DualTree, SeamGraph, connect_cones};
 use seamstress::layout::isometric::unfold;
 use seamstress::layout::safeguards::retree;
@@ -46,10 +47,12 @@ fn trees(mesh: &TriMesh) -> [DualTree; 2] {
 }
 
 fn rounded(mesh: &TriMesh, metric: &Metric) -> MatchedCut {
-    let mut matched = MatchedCut::new(mesh, metric, DualTree::lightest(mesh, noise(mesh)));
+    let mut matched =
+        MatchedCut::new(&Sectors::unaligned(mesh), metric, DualTree::lightest(mesh, noise(mesh)));
     let options = RoundingOptions::default();
-    unwatched(|watch| round(mesh, metric, &mut matched, &options, watch)).unwrap();
-    let (_, hopeless) = repair(mesh, metric, &mut matched);
+    unwatched(|watch| round(&Sectors::unaligned(mesh), metric, &mut matched, &options, watch))
+        .unwrap();
+    let (_, hopeless) = repair(&Sectors::unaligned(mesh), metric, &mut matched);
     assert_eq!(hopeless, []);
     matched
 }
@@ -157,7 +160,10 @@ fn seams_through_cones_cut_to_a_disk_and_end_nowhere_else() {
 fn chains_hold_every_seam_once_and_run_between_nodes() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
-        let cones = turned_vertices(&mesh, &rounded(&mesh, &metric).matching_per_halfedge(&mesh));
+        let cones = turned_vertices(
+            &mesh,
+            &rounded(&mesh, &metric).matching_per_halfedge(&Sectors::unaligned(&mesh)),
+        );
         let (cut, _) = connect_cones(&mesh, &metric, &cones).unwrap();
         let graph = SeamGraph::new(&mesh, &cut, &cones);
         let total: usize = graph.chains.iter().map(|c| c.left.len()).sum();
@@ -202,13 +208,13 @@ fn indices_sum_to_four_times_chi_whatever_the_rotations() {
     for (seed, soup) in shapes().iter().enumerate() {
         let (mesh, metric) = surface(soup);
         for tree in trees(&mesh) {
-            let matched = MatchedCut::new(&mesh, &metric, tree);
+            let matched = MatchedCut::new(&Sectors::unaligned(&mesh), &metric, tree);
             let mut rng = kit::Rng::new(seed as u64);
             let r: Vec<f64> = matched.cut.seams.iter().map(|_| 20.0 * rng.unit() - 10.0).collect();
-            let sum: f64 = matched.indices(&mesh, &metric, &r).iter().sum();
+            let sum: f64 = matched.indices(&Sectors::unaligned(&mesh), &metric, &r).iter().sum();
             assert!((sum - 4.0 * mesh.euler_characteristic() as f64).abs() < 1e-8);
             // At the isometric rotations the index is the curvature.
-            let index = matched.indices(&mesh, &metric, &matched.isometric);
+            let index = matched.indices(&Sectors::unaligned(&mesh), &metric, &matched.isometric);
             for (k, defect) in index.iter().zip(metric.curvature(&mesh).iter()) {
                 assert!((k * std::f64::consts::FRAC_PI_2 - defect).abs() < 1e-12);
             }
@@ -223,7 +229,7 @@ fn rounding_and_repair_leave_possible_integers() {
         let matched = rounded(&mesh, &metric);
         let real = real_indices(&mesh, &metric, &matched);
         assert!((real.iter().sum::<f64>() - 4.0 * mesh.euler_characteristic() as f64).abs() < 1e-8);
-        let index = matched.cone_indices(&mesh, &metric);
+        let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
             assert!((real[v.at()] - f64::from(index[v])).abs() < 1e-8);
             let (low, high) = index_bounds(mesh.valence(v));
@@ -234,7 +240,8 @@ fn rounding_and_repair_leave_possible_integers() {
                 mesh.valence(v)
             );
         }
-        let turned = turned_vertices(&mesh, &matched.matching_per_halfedge(&mesh));
+        let turned =
+            turned_vertices(&mesh, &matched.matching_per_halfedge(&Sectors::unaligned(&mesh)));
         for v in mesh.vertices() {
             assert_eq!(turned[v], index[v].rem_euclid(4) != 0);
         }
@@ -245,11 +252,15 @@ fn rounding_and_repair_leave_possible_integers() {
 fn repair_brings_any_matching_within_bounds() {
     for (seed, soup) in shapes().iter().enumerate() {
         let (mesh, metric) = surface(soup);
-        let mut matched = MatchedCut::new(&mesh, &metric, DualTree::lightest(&mesh, noise(&mesh)));
+        let mut matched = MatchedCut::new(
+            &Sectors::unaligned(&mesh),
+            &metric,
+            DualTree::lightest(&mesh, noise(&mesh)),
+        );
         let mut rng = kit::Rng::new(seed as u64);
         matched.matching.iter_mut().for_each(|r| *r += rng.below(7) as i32 - 3);
-        let (_, hopeless) = repair(&mesh, &metric, &mut matched);
-        let index = matched.cone_indices(&mesh, &metric);
+        let (_, hopeless) = repair(&Sectors::unaligned(&mesh), &metric, &mut matched);
+        let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
             let (low, high) = index_bounds(mesh.valence(v));
             assert!((low..=high).contains(&index[v]) || hopeless.contains(&v));
@@ -273,7 +284,7 @@ fn the_bounds_of_indices_leave_room_in_the_corners() {
 /// Both sets of matchings in the gauge of one tree, modulo full turns.
 fn in_one_gauge(mesh: &TriMesh, matched: &MatchedCut) -> Vec<i32> {
     let tree = &trees(mesh)[1];
-    let (moved, _) = regauge(mesh, tree, &matched.matching_per_halfedge(mesh));
+    let (moved, _) = regauge(mesh, tree, &matched.matching_per_halfedge(&Sectors::unaligned(mesh)));
     moved.iter().map(|r| r.rem_euclid(4)).collect()
 }
 
@@ -282,7 +293,7 @@ fn a_new_tree_changes_the_gauge_alone() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
         let matched = rounded(&mesh, &metric);
-        let other = retree(&mesh, &metric, &matched);
+        let other = retree(&Sectors::unaligned(&mesh), &metric, &matched);
         assert_eq!(in_one_gauge(&mesh, &other), in_one_gauge(&mesh, &matched));
         // On the boundary, where frames are free, indices may move.
         let (before, after) =
@@ -301,14 +312,14 @@ fn new_holonomy_keeps_every_index() {
         let mut matched = rounded(&mesh, &metric);
         let mut rng = kit::Rng::new(seed as u64);
         matched.matching.iter_mut().for_each(|r| *r += rng.below(3) as i32 - 1);
-        let before = matched.cone_indices(&mesh, &metric);
+        let before = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let sum: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
-        fix_holonomy(&mesh, &metric, &mut matched).unwrap();
-        assert_eq!(matched.cone_indices(&mesh, &metric), before);
+        fix_holonomy(&Sectors::unaligned(&mesh), &metric, &mut matched).unwrap();
+        assert_eq!(matched.sector_indices(&Sectors::unaligned(&mesh), &metric), before);
         let after: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         assert!((sum - after).abs() < 1e-8);
         // What is best is not changed again.
-        assert_eq!(fix_holonomy(&mesh, &metric, &mut matched).unwrap(), 0);
+        assert_eq!(fix_holonomy(&Sectors::unaligned(&mesh), &metric, &mut matched).unwrap(), 0);
     }
 }
 
@@ -319,12 +330,18 @@ fn clean_up_never_makes_cones() {
         for price in [0.0006, 0.01, 1.0] {
             let mut matched = rounded(&mesh, &metric);
             let count = |matched: &MatchedCut| {
-                matched.cone_indices(&mesh, &metric).iter().filter(|&&k| k != 0).count()
+                matched
+                    .sector_indices(&Sectors::unaligned(&mesh), &metric)
+                    .iter()
+                    .filter(|&&k| k != 0)
+                    .count()
             };
             let before = count(&matched);
             let options = CleanUpOptions { price, largest_scale: f64::INFINITY };
-            let (stats, _) =
-                unwatched(|watch| clean_up(&mesh, &metric, &mut matched, &options, watch)).unwrap();
+            let (stats, _) = unwatched(|watch| {
+                clean_up(&Sectors::unaligned(&mesh), &metric, &mut matched, &options, watch)
+            })
+            .unwrap();
             assert_eq!((stats.cones_before, stats.cones_after), (before, count(&matched)));
             assert!(stats.cones_after <= stats.cones_before);
             let real = real_indices(&mesh, &metric, &matched);

@@ -5,6 +5,7 @@ mod common;
 
 use common::{surface, unwatched};
 use num_complex::Complex64;
+use seamstress::Sectors;
 use seamstress::cut::{Cut, DualTree, SeamGraph, connect_cones};
 use seamstress::layout::arap::frames;
 use seamstress::layout::energy::{Energy, Jacobian, SymmetricDirichlet};
@@ -44,10 +45,11 @@ fn shapes() -> Vec<TriangleSoup> {
 /// Rounded and repaired matchings over a plain tree, and the last frames of the rounding.
 fn rounded(mesh: &TriMesh, metric: &Metric) -> (MatchedCut, Vec<Complex64>) {
     let tree = DualTree::lightest(mesh, |h| metric.length[h]);
-    let mut matched = MatchedCut::new(mesh, metric, tree);
+    let mut matched = MatchedCut::new(&Sectors::unaligned(mesh), metric, tree);
     let options = RoundingOptions::default();
-    let rounding = unwatched(|watch| round(mesh, metric, &mut matched, &options, watch));
-    repair(mesh, metric, &mut matched);
+    let rounding =
+        unwatched(|watch| round(&Sectors::unaligned(mesh), metric, &mut matched, &options, watch));
+    repair(&Sectors::unaligned(mesh), metric, &mut matched);
     (matched, rounding.unwrap().0)
 }
 
@@ -69,7 +71,7 @@ struct Space {
 }
 
 fn space_of(mesh: &TriMesh, metric: &Metric) -> Space {
-    let full = rounded(mesh, metric).0.matching_per_halfedge(mesh);
+    let full = rounded(mesh, metric).0.matching_per_halfedge(&Sectors::unaligned(mesh));
     let cones = turned_vertices(mesh, &full);
     let (cut, tree) = connect_cones(mesh, metric, &cones).unwrap();
     let (mut matching, _) = regauge(mesh, &tree, &full);
@@ -162,12 +164,16 @@ fn homotopies_end_with_the_angles_of_the_cones() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
         let (matched, _) = rounded(&mesh, &metric);
-        let index = matched.cone_indices(&mesh, &metric);
+        let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let triangles = triangles(&mesh, &metric, &matched.cut);
         let settings = Continuation::default();
         let closed = [
-            unwatched(|watch| barrier(&mesh, &metric, &matched, watch)).unwrap(),
-            unwatched(|watch| continuation(&mesh, &metric, &matched, &settings, watch)).unwrap(),
+            unwatched(|watch| barrier(&Sectors::unaligned(&mesh), &metric, &matched, watch))
+                .unwrap(),
+            unwatched(|watch| {
+                continuation(&Sectors::unaligned(&mesh), &metric, &matched, &settings, watch)
+            })
+            .unwrap(),
         ];
         for layout in closed {
             assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
@@ -186,16 +192,18 @@ fn exact_layouts_have_the_angles_asked_for_over_any_tree() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
         let (matched, frames) = rounded(&mesh, &metric);
-        let over_new_tree = retree(&mesh, &metric, &matched);
+        let over_new_tree = retree(&Sectors::unaligned(&mesh), &metric, &matched);
         for (matched, start) in [(&matched, Some(frames.as_slice())), (&over_new_tree, None)] {
-            let laid =
-                unwatched(|watch| lay_out(&mesh, &metric, matched.clone(), start, watch)).unwrap();
-            assert!(laid.layout.defects(&mesh, &laid.y).none());
+            let laid = unwatched(|watch| {
+                lay_out(&Sectors::unaligned(&mesh), &metric, matched.clone(), start, watch)
+            })
+            .unwrap();
+            assert!(laid.layout.defects(&Sectors::unaligned(&mesh), &laid.y).none());
             let z = laid.layout.expand(&laid.y);
             let (cut, problem) = (&laid.layout.cut, laid.layout.problem());
             assert!(seam_residual(&mesh, cut, &laid.layout.matching, &z) < 1e-11);
             let sums = angle_sums(&mesh, problem.triangles(), &z);
-            let index = matched.cone_indices(&mesh, &metric);
+            let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
             for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
                 let expected = f64::from(4 - index[v]) * FRAC_PI_2;
                 assert!((sums[v] - expected).abs() < 1e-6);
@@ -208,11 +216,11 @@ fn exact_layouts_have_the_angles_asked_for_over_any_tree() {
 fn a_mirrored_layout_is_all_defects() {
     let (mesh, metric) = surface(&kit::cube());
     let (matched, frames) = rounded(&mesh, &metric);
-    let mut layout = ExactLayout::new(&mesh, &metric, &matched).unwrap();
+    let mut layout = ExactLayout::new(&Sectors::unaligned(&mesh), &metric, &matched).unwrap();
     let y = layout.arap(&frames, 20).unwrap();
-    assert!(layout.defects(&mesh, &y).none());
+    assert!(layout.defects(&Sectors::unaligned(&mesh), &y).none());
     let nothing = vec![0.0; y.len()];
-    assert_eq!(layout.defects(&mesh, &nothing).flips.len(), 12);
+    assert_eq!(layout.defects(&Sectors::unaligned(&mesh), &nothing).flips.len(), 12);
     let corners = [Complex64::ZERO, Complex64::ONE, Complex64::I];
     assert!(is_positive(corners) && !is_positive(corners.map(|z| z.conj())));
 }

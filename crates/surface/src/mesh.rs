@@ -213,6 +213,38 @@ impl TriMesh {
         self.boundary.iter().any(|&b| b)
     }
 
+    /// The mesh cut open along edges, and the vertex that each of its vertices comes from.
+    ///
+    /// Faces and half-edges keep their ids. Every fan of corners between cut edges becomes a vertex of
+    /// its own; the first at a vertex keeps its id, the others are numbered behind all vertices. Edges are
+    /// given by both half-edges; boundary edges are open already.
+    #[must_use]
+    pub fn slit(&self, along: &HalfedgeData<bool>) -> (Self, VertexData<Vertex>) {
+        let mut slit = self.clone();
+        for h in self.halfedges().filter(|&h| along[h]) {
+            slit.twin[h] = NONE;
+        }
+        let mut source: VertexData<Vertex> = self.vertices().collect();
+        for v in self.vertices() {
+            let fan: Vec<Halfedge> = self.outgoing(v).collect();
+            let is_start = |&k: &usize| slit.twin[fan[k]] == NONE;
+            let starts: Vec<usize> = (0..fan.len()).filter(is_start).collect();
+            for (i, &start) in starts.iter().enumerate() {
+                let id = if i == 0 { v } else { Vertex::from(source.len()) };
+                if i > 0 {
+                    source.0.push(v);
+                    slit.outgoing.0.push(NONE);
+                    slit.boundary.0.push(true);
+                }
+                slit.outgoing[id] = fan[start].0;
+                slit.boundary[id] = true;
+                let end = starts.get(i + 1).copied().unwrap_or(starts[0] + fan.len());
+                (start..end).for_each(|k| slit.origin[fan[k % fan.len()]] = id);
+            }
+        }
+        (slit, source)
+    }
+
     /// Euler characteristic #V - #E + #F, vertices without a face left out, boundaries unfilled.
     pub fn euler_characteristic(&self) -> i64 {
         let used = self.outgoing.iter().filter(|&&h| h != NONE).count();
@@ -345,6 +377,41 @@ mod tests {
             MeshError::RepeatedHalfedge { from: 0, to: 1, face: 1 }
         );
         assert_eq!(bad(5, &[[0, 1, 2], [0, 3, 4]]), MeshError::NonManifoldVertex(0));
+    }
+
+    #[test]
+    fn slitting_one_edge_opens_two_fans() {
+        let mesh = TriMesh::from_faces(4, &TETRAHEDRON).unwrap();
+        let cut = |ends: [u32; 2]| {
+            move |h: Halfedge, m: &TriMesh| {
+                ends.contains(&m.origin(h).0) && ends.contains(&m.tip(h).0)
+            }
+        };
+        let along = mesh.halfedges().map(|h| cut([0, 1])(h, &mesh)).collect();
+        let (slit, source) = mesh.slit(&along);
+        // one edge became two, no vertex came apart: a sphere with a hole of two edges
+        assert_eq!(source.0, [0, 1, 2, 3].map(Vertex));
+        assert_eq!(
+            (slit.n_edges(), slit.n_boundary_loops(), slit.euler_characteristic()),
+            (7, 1, 1)
+        );
+        assert_eq!(slit.outgoing(Vertex(0)).count(), 3);
+        let nothing = HalfedgeData::filled(12, false);
+        assert_eq!(mesh.slit(&nothing).0, mesh);
+    }
+
+    #[test]
+    fn slitting_a_loop_separates_the_fans_on_its_sides() {
+        let mesh = TriMesh::from_faces(4, &TETRAHEDRON).unwrap();
+        // around face 0, whose vertices are 0, 1 and 2
+        let along = mesh.halfedges().map(|h| mesh.origin(h).0 < 3 && mesh.tip(h).0 < 3).collect();
+        let (slit, source) = mesh.slit(&along);
+        assert_eq!(slit.connected_faces().1, 2);
+        assert_eq!((slit.n_vertices(), slit.n_boundary_loops()), (7, 2));
+        for h in mesh.halfedges() {
+            assert_eq!(source[slit.origin(h)], mesh.origin(h));
+            assert!(slit.outgoing(slit.origin(h)).any(|g| g == h));
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The edges that a map has to align with the axes.
 
-use seamstress_surface::{Halfedge, HalfedgeData, TriMesh};
+use seamstress_surface::{Component, Face, Halfedge, HalfedgeData, TriMesh};
 use std::collections::HashMap;
 
 /// Why edges given as vertex pairs are no edges to align.
@@ -68,6 +68,21 @@ impl FeatureEdges {
             }
         }
         Ok(features)
+    }
+
+    /// The edges of a component, in its own ids.
+    pub(crate) fn of_component(&self, piece: &Component) -> Self {
+        let whole = |f: &Face| f.halfedges().map(|h| self.aligned[h]);
+        Self { aligned: piece.faces.iter().flat_map(whole).collect() }
+    }
+
+    /// Adds the edges of a component, which are in its own ids.
+    pub(crate) fn add_component(&mut self, piece: &Component, edges: &Self) {
+        for (i, f) in piece.faces.iter().enumerate() {
+            for (h, local) in f.halfedges().into_iter().zip(Face::from(i).halfedges()) {
+                self.aligned[h] |= edges.aligned[local];
+            }
+        }
     }
 
     /// Whether the edge of a half-edge is aligned.

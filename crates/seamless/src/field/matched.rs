@@ -6,6 +6,7 @@ use super::frames_of_matchings::spectral_frames;
 use crate::cut::{DualTree, curvature_weight};
 use crate::layout::space::regauge;
 use crate::quarter::turn;
+use crate::features::Sectors;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
@@ -22,6 +23,7 @@ pub fn matched_cut(
     metric: &Metric,
     field: &CrossField,
 ) -> (MatchedCut, Vec<Complex64>) {
+    let sectors = Sectors::unaligned(mesh);
     let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
     let mut full = field.matching().clone();
     for (parent, child) in tree.parent.iter().filter_map(|h| Some(((*h)?, mesh.twin((*h)?)?))) {
@@ -31,7 +33,7 @@ pub fn matched_cut(
         }
     }
     let (moved, gauge) = regauge(mesh, &tree, &full);
-    let mut matched = MatchedCut::new(mesh, metric, tree);
+    let mut matched = MatchedCut::new(&sectors, metric, tree);
     for (r, &h) in matched.matching.iter_mut().zip(&matched.cut.seams) {
         *r = moved[h];
     }

@@ -1,7 +1,7 @@
 //! Moving indices to where they are prescribed.
 
 use super::prescription::{ConePrescription, PrescriptionError};
-use crate::layout::space::regauge;
+use crate::features::Sectors;
 use crate::rounding::{MatchedCut, index_bounds};
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::collections::VecDeque;
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// distorts less than a cone torn from its place.
 const REACH: u32 = 12;
 
-/// Shifts matchings of a connected mesh until every prescribed index is met; returns how many shifts it
+/// Shifts matchings of a connected mesh without aligned edges until every prescribed index is met; returns how many shifts it
 /// took.
 ///
 /// A vertex with a unit too many or too few passes it along a shortest path of edges. It goes to the
@@ -20,14 +20,15 @@ const REACH: u32 = 12;
 /// # Errors
 /// [`PrescriptionError::NoTaker`].
 pub fn impose(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &mut MatchedCut,
     prescription: &ConePrescription,
 ) -> Result<usize, PrescriptionError> {
+    let mesh = sectors.mesh();
     let mut transfer = Transfer {
         mesh,
-        index: matched.cone_indices(mesh, metric),
+        index: matched.sector_indices(sectors, metric),
         target: prescription.index(),
         transport: HalfedgeData::filled(mesh.n_halfedges(), 0),
     };
@@ -46,12 +47,7 @@ pub fn impose(
             transfer.send(&path, unit);
         }
     }
-    let mut full = matched.matching_per_halfedge(mesh);
-    full.iter_mut().zip(transfer.transport.iter()).for_each(|(r, moved)| *r += moved);
-    let (moved, _) = regauge(mesh, &matched.tree, &full);
-    for (r, &h) in matched.matching.iter_mut().zip(&matched.cut.seams) {
-        *r = moved[h];
-    }
+    matched.turn(sectors, &transfer.transport);
     Ok(shifts)
 }
 

@@ -1,5 +1,6 @@
 //! Layouts whose seams are closed exactly: the cut through the cones and the space over it.
 
+use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
 use super::energy::Energy;
 use super::homotopy::angle_sums;
@@ -8,6 +9,7 @@ use super::problem::LayoutProblem;
 use super::space::{regauge, seamless_space, turned_vertices};
 use super::triangle::triangles;
 use crate::cut::{Cut, SeamGraph, connect_cones};
+use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::{turn, within};
@@ -27,7 +29,7 @@ pub struct ExactLayout {
     pub matching: HalfedgeData<i32>,
     /// Quarter turns applied to each face against the gauge of the all-seam cut.
     pub gauge: FaceData<i32>,
-    /// Index of each interior vertex, in quarters, that the layout must have.
+    /// Index of each sector, in quarters, that the layout must have.
     pub index: VertexData<i32>,
     problem: LayoutProblem,
 }
@@ -37,7 +39,7 @@ pub struct ExactLayout {
 pub struct Defects {
     /// Triangles whose orientation is not positive.
     pub flips: Vec<Face>,
-    /// Interior vertices whose angle sum is not `(4 - k) pi / 2`.
+    /// Vertices with a sector whose angle is not the whole number of quarters it has to be.
     pub wrong_angles: Vec<Vertex>,
 }
 
@@ -45,6 +47,16 @@ impl Defects {
     /// Neither flips nor wrong angles.
     pub fn none(&self) -> bool {
         self.flips.is_empty() && self.wrong_angles.is_empty()
+    }
+
+    /// Marks the vertices of flipped triangles and those with wrong angles.
+    pub fn vertices(&self, mesh: &TriMesh) -> VertexData<bool> {
+        let mut marked = VertexData::filled(mesh.n_vertices(), false);
+        for v in self.flips.iter().flat_map(|&f| mesh.face_vertices(f)) {
+            marked[v] = true;
+        }
+        self.wrong_angles.iter().for_each(|&v| marked[v] = true);
+        marked
     }
 }
 
@@ -67,17 +79,17 @@ impl std::fmt::Display for Defects {
 }
 
 impl ExactLayout {
-    /// Cuts through the cones of the matchings and builds the exact space.
+    /// Cuts through the cones of the matchings and builds the exact space, aligned edges along the axes.
     ///
     /// # Errors
     /// When the system cannot be set up.
     pub fn new(
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         matched: &MatchedCut,
     ) -> Result<Self, NotPositiveDefinite> {
-        let index = matched.cone_indices(mesh, metric);
-        Self::over(mesh, metric, &matched.matching_per_halfedge(mesh), index)
+        let index = matched.sector_indices(sectors, metric);
+        Self::over(sectors, metric, &matched.matching_per_halfedge(sectors), index)
     }
 
     /// The exact layouts with the matchings (modulo 4) and cones of a map of a connected mesh, and the
@@ -103,7 +115,7 @@ impl ExactLayout {
         for cone in map.cones() {
             index[Vertex(cone.vertex)] = cone.index;
         }
-        let mut layout = Self::over(mesh, metric, &full, index)?;
+        let mut layout = Self::over(&Sectors::unaligned(mesh), metric, &full, index)?;
         let corner = |h: Halfedge| {
             let [u, v] = map.corner_uvs()[h.at()];
             Complex64::new(u, v) / metric.unit
@@ -113,22 +125,37 @@ impl ExactLayout {
         Ok((layout, y))
     }
 
-    /// Over the matching of every half-edge, which counts modulo 4, and the index of every vertex.
+    /// Over the matching of every half-edge of the slit mesh, which counts modulo 4, and the index of
+    /// every sector.
     fn over(
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
-        full: &HalfedgeData<i32>,
+        slit_matching: &HalfedgeData<i32>,
         index: VertexData<i32>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let is_cone = turned_vertices(mesh, full);
+        let mesh = sectors.mesh();
+        let full = sectors.glue(slit_matching);
+        let is_cone = turned_vertices(mesh, &full);
         let (cut, tree) = connect_cones(mesh, metric, &is_cone).ok_or(NotPositiveDefinite)?;
-        let (mut matching, gauge) = regauge(mesh, &tree, full);
+        let (mut matching, gauge) = regauge(mesh, &tree, &full);
         for h in mesh.halfedges() {
             // Off the seams the matchings are multiples of four: the same rotation as none.
             matching[h] = if cut.is_seam[h] { matching[h] } else { 0 };
         }
         let graph = SeamGraph::new(mesh, &cut, &is_cone);
-        let space = seamless_space(mesh, &cut, &graph, &matching);
+        let mut space = seamless_space(mesh, &cut, &graph, &matching);
+        if sectors.any_aligned() {
+            let direction = |h: Halfedge| gauge[h.face()] - slit_matching[h];
+            let levels: Vec<Level> = sectors
+                .aligned()
+                .map(|h| Level {
+                    ends: cut.ends(h),
+                    // An edge along u (an even direction) is level in v.
+                    coordinate: 1 - direction(h).rem_euclid(2) as u32,
+                })
+                .collect();
+            space = leveled(&space, &levels);
+        }
         let problem = LayoutProblem::new(space, triangles(mesh, metric, &cut), None)?;
         Ok(Self { cut, matching, gauge, index, problem })
     }
@@ -247,17 +274,21 @@ impl ExactLayout {
     }
 
     /// Lists flips and wrong angles.
-    pub fn defects(&self, mesh: &TriMesh, y: &[f64]) -> Defects {
+    pub fn defects(&self, sectors: &Sectors<'_>, y: &[f64]) -> Defects {
         let z = self.expand(y);
+        let slit = sectors.slit();
         let flipped =
             |f: &Face| !is_positive(self.problem.triangles()[f.at()].wedges.map(|w| z[w as usize]));
-        let sums = angle_sums(mesh, self.problem.triangles(), &z);
-        let wrong = mesh.vertices().filter(|&v| {
-            let expected = f64::from(4 - self.index[v]) * FRAC_PI_2;
+        let sums = angle_sums(slit, self.problem.triangles(), &z);
+        let wrong = slit.vertices().filter(|&s| {
+            let expected = sectors.quarters(s, f64::from(self.index[s])) * FRAC_PI_2;
             // A wrong angle is off by a quarter turn at least.
-            !mesh.is_boundary(v) && !within((sums[v] - expected).abs(), 0.1)
+            !sectors.is_free(s) && !within((sums[s] - expected).abs(), 0.1)
         });
-        Defects { flips: mesh.faces().filter(flipped).collect(), wrong_angles: wrong.collect() }
+        let mut wrong_angles: Vec<Vertex> = wrong.map(|s| sectors.vertex(s)).collect();
+        wrong_angles.sort_unstable();
+        wrong_angles.dedup();
+        Defects { flips: slit.faces().filter(flipped).collect(), wrong_angles }
     }
 }
 

@@ -12,6 +12,7 @@ use super::penalty::SeamPenalty;
 use super::problem::LayoutProblem;
 use super::space::LinearSpace;
 use super::triangle::{Triangle, triangles};
+use crate::features::Sectors;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::{rotation, unit};
 use crate::rounding::MatchedCut;
@@ -38,7 +39,7 @@ pub struct Closed {
     pub z: Vec<Complex64>,
     /// Newton steps taken.
     pub steps: usize,
-    /// The widest seam gap left, in mean edge lengths.
+    /// The widest gap left at a seam or an axis, in mean edge lengths.
     pub gap: f64,
 }
 
@@ -48,13 +49,13 @@ const BARRIER_STEPS: NewtonOptions = NewtonOptions { max_iterations: 3, toleranc
 
 /// Raises the penalty on the final matchings step by step.
 pub fn barrier(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &MatchedCut,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Closed, HomotopyError> {
     let targets = matched.matching.iter().map(|&r| unit(r)).collect();
-    let mut run = Run::new(mesh, metric, matched, targets)?;
+    let mut run = Run::new(sectors, metric, matched, targets)?;
     for (k, weight) in BARRIER_WEIGHTS.into_iter().enumerate() {
         watch.tick(k as f64 / BARRIER_WEIGHTS.len() as f64)?;
         run.relax(weight, &BARRIER_STEPS, watch)?;
@@ -65,9 +66,9 @@ pub fn barrier(
 /// Settings of the lifted continuation.
 #[derive(Debug, Clone, Copy)]
 pub struct Continuation {
-    /// Most change of a seam's rotation in one step, quarter turns.
+    /// Most change of an edge's rotation in one step, quarter turns.
     pub largest_turn: f64,
-    /// Most error of an interior angle sum after a step, radians.
+    /// Most error of a sector's angle after a step, radians.
     pub angle_tolerance: f64,
 }
 
@@ -85,7 +86,7 @@ const CONTINUATION_MOST_STEPS: usize = 600;
 /// Turns the seam targets from the isometric rotations to the matchings along the lifted line between
 /// them, `r0 + s (r - r0)`.
 pub fn continuation(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &MatchedCut,
     settings: &Continuation,
@@ -99,20 +100,20 @@ pub fn continuation(
     let turns = |r: &[f64]| r.iter().map(|&r| rotation(r)).collect::<Vec<_>>();
     let widest = change.iter().fold(0.0f64, |m, d| m.max(d.abs())).max(1e-9);
     let first_step = (settings.largest_turn / widest).min(1.0);
-    let mut run = Run::new(mesh, metric, matched, turns(&matched.isometric))?;
+    let mut run = Run::new(sectors, metric, matched, turns(&matched.isometric))?;
     let (mut s, mut step, mut weight) = (0.0, first_step, CONTINUATION_WEIGHT);
     while s < 1.0 - 1e-12 && run.steps < CONTINUATION_MOST_STEPS {
         watch.tick(s)?;
         let next = (s + step).min(1.0);
         let r = at(next);
-        let index = matched.indices(mesh, metric, &r);
+        let index = matched.indices(sectors, metric, &r);
         run.set_targets(turns(&r));
         let before = run.y.clone();
         let mut tried = weight;
         let mut reached = false;
         for _ in 0..4 {
             run.relax(tried, &CONTINUATION_STEPS, watch)?;
-            if run.angle_error(mesh, &index) < settings.angle_tolerance {
+            if run.angle_error(sectors, &index) < settings.angle_tolerance {
                 reached = true;
                 break;
             }
@@ -149,16 +150,17 @@ struct Run {
 
 impl Run {
     fn new(
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         matched: &MatchedCut,
         targets: Vec<Complex64>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let z = unfold(mesh, metric, &matched.tree, &matched.cut);
-        let penalty = SeamPenalty::new(mesh, &matched.cut, targets, 0.0);
+        let slit = sectors.slit();
+        let z = unfold(slit, metric, &matched.tree, &matched.cut);
+        let penalty = SeamPenalty::new(sectors, matched, targets, 0.0);
         let problem = LayoutProblem::new(
             LinearSpace::free(matched.cut.n_wedges),
-            triangles(mesh, metric, &matched.cut),
+            triangles(slit, metric, &matched.cut),
             Some(penalty),
         )?;
         let y = z.iter().flat_map(|z| [z.re, z.im]).collect();
@@ -188,12 +190,13 @@ impl Run {
         Ok(())
     }
 
-    fn angle_error(&self, mesh: &TriMesh, index: &VertexData<f64>) -> f64 {
+    fn angle_error(&self, sectors: &Sectors<'_>, index: &VertexData<f64>) -> f64 {
         let z = self.problem.space().expand(&self.y);
-        let sums = angle_sums(mesh, self.problem.triangles(), &z);
-        mesh.vertices()
-            .filter(|&v| !mesh.is_boundary(v))
-            .map(|v| (sums[v] - (4.0 - index[v]) * FRAC_PI_2).abs())
+        let slit = sectors.slit();
+        let sums = angle_sums(slit, self.problem.triangles(), &z);
+        slit.vertices()
+            .filter(|&s| !sectors.is_free(s))
+            .map(|s| (sums[s] - sectors.quarters(s, index[s]) * FRAC_PI_2).abs())
             .fold(0.0, f64::max)
     }
 
@@ -204,7 +207,7 @@ impl Run {
     }
 }
 
-/// Sum of the layout's corner angles around each vertex, radians; a flipped corner counts negative.
+/// Sum of the layout's corner angles around each vertex of a mesh or sector of a slit one, radians; a flipped corner counts negative.
 pub fn angle_sums(mesh: &TriMesh, triangles: &[Triangle], z: &[Complex64]) -> VertexData<f64> {
     let mut sums = VertexData::filled(mesh.n_vertices(), 0.0);
     for (f, t) in mesh.faces().zip(triangles) {

@@ -7,13 +7,16 @@ use seamstress_surface::{Face, FaceData, Halfedge, Metric, TriMesh};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Direction of each face's first half-edge in the unfolded plane, radians, summed up along the tree
-/// without taking any remainder.
+/// without taking any remainder. Faces that hang on the ground have that edge on the u axis.
 ///
 /// It is a linear function of the corner angles, which makes seam rotations comparable between metrics
 /// and liftable: two layouts that differ by full turns get different numbers.
 pub(crate) fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
     let mut heading = FaceData::filled(mesh.n_faces(), 0.0);
     for &f in &tree.order {
+        if let Some(h) = tree.ground[f] {
+            heading[f] = -turning(metric, h);
+        }
         let Some(h) = tree.parent[f] else { continue };
         let Some(t) = mesh.twin(h) else { continue };
         heading[f] = heading[h.face()] + turning(metric, h) - turning(metric, t) - PI;
@@ -60,16 +63,23 @@ pub fn unfold(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Ve
     z
 }
 
-/// Lifted rotation of each seam in the isometric layout, in quarter turns: the angle from the left
-/// to the right image of the edge.
-pub fn seam_rotations(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Vec<f64> {
+/// Lifted rotation of each half-edge in the isometric layout, in quarter turns: the angle from the left
+/// to the right image of its edge, which for edges without a twin is on the ground, along the u axis.
+pub fn rotations(
+    mesh: &TriMesh,
+    metric: &Metric,
+    tree: &DualTree,
+    halfedges: &[Halfedge],
+) -> Vec<f64> {
     let heading = headings(mesh, metric, tree);
-    cut.seams
+    halfedges
         .iter()
         .map(|&h| {
-            let Some(t) = mesh.twin(h) else { return 0.0 };
             let left = heading[h.face()] + turning(metric, h);
-            let right = heading[t.face()] + turning(metric, t) + PI;
+            let right = match mesh.twin(h) {
+                Some(t) => heading[t.face()] + turning(metric, t) + PI,
+                None => 0.0,
+            };
             (right - left) / FRAC_PI_2
         })
         .collect()
@@ -94,7 +104,7 @@ mod tests {
             let length = (z[b as usize] - z[a as usize]).norm();
             assert!((length - metric.length[h]).abs() < 1e-10);
         }
-        let rotations = seam_rotations(&mesh, &metric, &tree, &cut);
+        let rotations = rotations(&mesh, &metric, &tree, &cut.seams);
         for (&h, r) in cut.seams.iter().zip(rotations) {
             let [a, b, c, d] = cut.seam_wedges(&mesh, h).map(|w| z[w as usize]);
             let turned = direction(b - a) * rotation(r);

@@ -1,5 +1,6 @@
 //! Laying a cut mesh out in the plane.
 
+pub mod alignment;
 pub mod arap;
 pub mod energy;
 pub mod exact;

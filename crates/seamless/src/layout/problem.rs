@@ -7,8 +7,8 @@ use super::triangle::{CHUNK, Triangle, sum_over, triangles};
 use crate::cut::Cut;
 use num_complex::Complex64;
 use rayon::prelude::*;
-use seamstress_numerics::ordering::{Graph, expand, nested_dissection};
-use seamstress_numerics::{Assembly, Cholesky, NotPositiveDefinite};
+use seamstress_numerics::ordering::{Graph, nested_dissection};
+use seamstress_numerics::{Assembly, Buckets, Cholesky, NotPositiveDefinite};
 use seamstress_surface::{Metric, TriMesh};
 
 /// How the six corner coordinates of a triangle depend on its unknowns.
@@ -50,7 +50,7 @@ impl LayoutProblem {
             elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
         let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
-        let order = order_pairs(space.n_unknowns() / 2, &elements);
+        let order = order_by_nodes(space.nodes(), &elements);
         let cholesky = Cholesky::analyze(assembly.pattern(), &order)?;
         Ok(Self {
             blocks: vec![0.0; assembly.blocks_len()],
@@ -277,11 +277,14 @@ fn element_map(space: &LinearSpace, triangle: &Triangle) -> (ElementMap, Vec<u32
     (ElementMap::Matrix(map), unknowns)
 }
 
-/// Elimination order of the unknowns: nested dissection of the graph of pairs.
-fn order_pairs(n_pairs: usize, elements: &[Vec<u32>]) -> Vec<u32> {
+/// Elimination order of the unknowns: nested dissection of the graph of their nodes.
+fn order_by_nodes(nodes: &[u32], elements: &[Vec<u32>]) -> Vec<u32> {
     let edges = elements.iter().flat_map(|unknowns| {
-        let pairs = move |k: usize| unknowns[k] / 2;
-        (0..unknowns.len()).flat_map(move |i| (0..i).map(move |j| (pairs(i), pairs(j))))
+        let node = move |k: usize| nodes[unknowns[k] as usize];
+        (0..unknowns.len()).flat_map(move |i| (0..i).map(move |j| (node(i), node(j))))
     });
-    expand(&nested_dissection(&Graph::from_edges(n_pairs, edges)), 2)
+    let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
+    let unknowns = Buckets::new(n_nodes, nodes);
+    let order = nested_dissection(&Graph::from_edges(n_nodes, edges));
+    order.iter().flat_map(|&node| unknowns.of(node as usize).iter().copied()).collect()
 }

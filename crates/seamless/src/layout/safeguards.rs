@@ -6,13 +6,14 @@ use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use crate::cut::{DualTree, curvature_weight};
+use crate::features::Sectors;
 use crate::field::{PrescriptionError, SmoothError};
 use crate::map::Violations;
 use crate::progress::{Cancelled, Watch};
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
-use seamstress_surface::{HalfedgeData, Metric, TriMesh};
+use seamstress_surface::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh};
 
 /// How a layout was reached; the later, the harder the input.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -117,54 +118,60 @@ const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-
 
 /// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation,
 /// the same over a better dual tree, the homotopies in snowflake metrics, in this order, until one has
-/// no flip and no wrong cone angle. (No flip alone is not enough: a vertex may be wound once too often.)
+/// no flip and no wrong angle. (No flip alone is not enough: a vertex may be wound once too often.) With
+/// aligned edges the snowflake metrics are left out.
 ///
 /// `start`: frames in the gauge of the all-seam cut.
 ///
 /// # Errors
 /// [`LayoutError`]; that of the last route with its elements when all of them leave defects.
 pub fn lay_out(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: MatchedCut,
     start: Option<&[Complex64]>,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Laid, LayoutError> {
-    let mut layout = ExactLayout::new(mesh, metric, &matched)?;
-    if matched.cut.seams.is_empty() {
+    let mut layout = ExactLayout::new(sectors, metric, &matched)?;
+    let mesh = sectors.mesh();
+    if matched.cut.seams.is_empty() && !sectors.any_aligned() {
         let z = unfold(mesh, metric, &matched.tree, &matched.cut);
         let y = layout.adopt(&matched.cut, &z);
-        if layout.defects(mesh, &y).none() {
+        if layout.defects(sectors, &y).none() {
             return Ok(Laid { matched, layout, y, route: Route::Isometric, homotopy_steps: 0 });
         }
     }
     if let Some(frames) = start {
         let y = layout.arap(frames, RIGID_ITERATIONS)?;
-        let defects = layout.defects(mesh, &y);
+        let defects = layout.defects(sectors, &y);
         if defects.none() {
             return Ok(Laid { matched, layout, y, route: Route::Rigid, homotopy_steps: 0 });
         }
         if (defects.flips.len() as f64) < UNTANGLE_SHARE * mesh.n_faces() as f64 {
             let (y, homotopy_steps) = untangle(&mut layout, y, watch)?;
-            if layout.defects(mesh, &y).none() {
+            if layout.defects(sectors, &y).none() {
                 return Ok(Laid { matched, layout, y, route: Route::Untangled, homotopy_steps });
             }
         }
     }
     let mut tried = Homotopies { steps: 0, last: Defects::default() };
-    let plain = tried.run(mesh, metric, matched, watch)?;
+    let plain = tried.run(sectors, metric, matched, watch)?;
     let matched = match plain {
         Attempt::Laid(laid) => return Ok(*laid),
         Attempt::Failed(matched) => matched,
     };
+    if sectors.any_aligned() {
+        // Releasing an edge is the better way out.
+        return Err(LayoutError::Defective(tried.last));
+    }
     for exponent in SNOWFLAKES {
         let snowflake = metric.snowflake(mesh, exponent);
-        let over = matched.with_metric(mesh, &snowflake);
-        if let Attempt::Laid(mut laid) = tried.run(mesh, &snowflake, over, watch)? {
+        let over = matched.with_metric(sectors, &snowflake);
+        if let Attempt::Laid(mut laid) = tried.run(sectors, &snowflake, over, watch)? {
             laid.y = way_back(mesh, metric, &mut laid.layout, laid.y, exponent, watch)?;
-            laid.matched = laid.matched.with_metric(mesh, metric);
+            laid.matched = laid.matched.with_metric(sectors, metric);
             laid.route = Route::Snowflake { exponent };
-            let defects = laid.layout.defects(mesh, &laid.y);
+            let defects = laid.layout.defects(sectors, &laid.y);
             if defects.none() {
                 return Ok(*laid);
             }
@@ -227,25 +234,25 @@ impl Homotopies {
     /// Barrier, continuation, continuation over a new tree.
     fn run(
         &mut self,
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         matched: MatchedCut,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Attempt, LayoutError> {
         let settings = Continuation::default();
-        let closed = homotopy::barrier(mesh, metric, &matched, watch)?;
-        let matched = match self.accept(mesh, metric, matched, closed, Route::Barrier)? {
+        let closed = homotopy::barrier(sectors, metric, &matched, watch)?;
+        let matched = match self.accept(sectors, metric, matched, closed, Route::Barrier)? {
             Attempt::Failed(matched) => matched,
             laid => return Ok(laid),
         };
-        let closed = homotopy::continuation(mesh, metric, &matched, &settings, watch)?;
-        let matched = match self.accept(mesh, metric, matched, closed, Route::Continuation)? {
+        let closed = homotopy::continuation(sectors, metric, &matched, &settings, watch)?;
+        let matched = match self.accept(sectors, metric, matched, closed, Route::Continuation)? {
             Attempt::Failed(matched) => matched,
             laid => return Ok(laid),
         };
-        let other = retree(mesh, metric, &matched);
-        let closed = homotopy::continuation(mesh, metric, &other, &settings, watch)?;
-        Ok(match self.accept(mesh, metric, other, closed, Route::Retreed)? {
+        let other = retree(sectors, metric, &matched);
+        let closed = homotopy::continuation(sectors, metric, &other, &settings, watch)?;
+        Ok(match self.accept(sectors, metric, other, closed, Route::Retreed)? {
             Attempt::Failed(_) => Attempt::Failed(matched),
             laid => laid,
         })
@@ -254,16 +261,16 @@ impl Homotopies {
     /// Projects a nearly closed layout into the exact space and looks at what comes out.
     fn accept(
         &mut self,
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         matched: MatchedCut,
         closed: Closed,
         route: Route,
     ) -> Result<Attempt, LayoutError> {
         self.steps += closed.steps;
-        let mut layout = ExactLayout::new(mesh, metric, &matched)?;
-        let y = layout.project(mesh, &matched.cut, &closed.z)?;
-        let defects = layout.defects(mesh, &y);
+        let mut layout = ExactLayout::new(sectors, metric, &matched)?;
+        let y = layout.project(sectors.mesh(), &matched.cut, &closed.z)?;
+        let defects = layout.defects(sectors, &y);
         if defects.none() {
             let homotopy_steps = self.steps;
             let laid = Laid { matched, layout, y, route, homotopy_steps };
@@ -301,33 +308,40 @@ pub fn way_back(
 
 /// The same matchings over a dual tree that crosses few edges where they differ from the isometric
 /// rotations, lifted so that the differences stay what they are.
-pub fn retree(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> MatchedCut {
-    let curvature = curvature_weight(mesh, metric);
-    let mut transport = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
-    let mut isometric = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
-    for ((&h, &r), &r0) in matched.cut.seams.iter().zip(&matched.matching).zip(&matched.isometric) {
-        let Some(t) = mesh.twin(h) else { continue };
+pub fn retree(sectors: &Sectors<'_>, metric: &Metric, matched: &MatchedCut) -> MatchedCut {
+    let slit = sectors.slit();
+    let curvature = curvature_weight(slit, metric);
+    let mut transport = HalfedgeData::filled(slit.n_halfedges(), 0.0);
+    let mut isometric = HalfedgeData::filled(slit.n_halfedges(), 0.0);
+    for ((&h, &r), &r0) in matched.turning.iter().zip(&matched.matching).zip(&matched.isometric) {
         let d = (f64::from(r) - r0).abs();
-        (transport[h], transport[t]) = (d, d);
-        (isometric[h], isometric[t]) = (r0, -r0);
+        (transport[h], isometric[h]) = (d, r0);
+        if let Some(t) = slit.twin(h) {
+            (transport[t], isometric[t]) = (d, -r0);
+        }
     }
-    let tree = DualTree::lightest(mesh, |h| 1e3 * (transport[h] - 0.5).max(0.0) + curvature(h));
-    let full = matched.matching_per_halfedge(mesh);
-    let (regauged, _) = super::space::regauge(mesh, &tree, &full);
-    let mut other = MatchedCut::new(mesh, metric, tree);
+    let price = |h: Halfedge| 1e3 * (transport[h] - 0.5).max(0.0);
+    let grounding = sectors.aligned().map(|h| (price(h) - metric.length[h], h));
+    let tree = DualTree::grounded(slit, grounding, |h| price(h) + curvature(h));
+    let full = matched.matching_per_halfedge(sectors);
+    let (regauged, _) = super::space::regauge(slit, &tree, &full);
+    let mut other = MatchedCut::new(sectors, metric, tree);
     // Regauging moves both by whole and real turns along the tree; bring the difference over exactly.
-    let mut turn = seamstress_surface::FaceData::filled(mesh.n_faces(), 0.0);
+    let mut turn = FaceData::filled(slit.n_faces(), 0.0);
     for &f in &other.tree.order {
+        if let Some(h) = other.tree.ground[f] {
+            turn[f] = isometric[h];
+        }
         if let Some(h) = other.tree.parent[f] {
             turn[f] = turn[h.face()] - isometric[h];
         }
     }
-    for (s, &h) in other.cut.seams.iter().enumerate() {
-        let Some(t) = mesh.twin(h) else { continue };
-        let lifted = isometric[h] + turn[t.face()] - turn[h.face()];
+    for (e, &h) in other.turning.iter().enumerate() {
+        let right = slit.twin(h).map_or(0.0, |t| turn[t.face()]);
+        let lifted = isometric[h] + right - turn[h.face()];
         // `lifted` and the new isometric rotation agree modulo 4; keep the lift of the matchings.
-        let shift = (other.isometric[s] - lifted).round() as i32;
-        other.matching[s] = regauged[h] + shift;
+        let shift = (other.isometric[e] - lifted).round() as i32;
+        other.matching[e] = regauged[h] + shift;
     }
     other
 }

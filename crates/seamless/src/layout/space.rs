@@ -8,11 +8,12 @@ use std::collections::BTreeMap;
 
 /// `z = N y`: the two coordinates of every wedge as sparse real functions of the unknowns `y`.
 ///
-/// Row `2 w` gives u and row `2 w + 1` gives v of wedge `w`. Unknowns come in pairs that belong
-/// together (the coordinates of a point or of a translation).
+/// Row `2 w` gives u and row `2 w + 1` gives v of wedge `w`. The unknowns of a *node* belong together: the
+/// coordinates of a point or of a translation, as far as they are free.
 #[derive(Debug, Clone)]
 pub struct LinearSpace {
-    n_unknowns: usize,
+    /// Node of each unknown, ascending without gaps.
+    nodes: Vec<u32>,
     offsets: Vec<u32>,
     columns: Vec<u32>,
     coefficients: Vec<f64>,
@@ -23,7 +24,7 @@ impl LinearSpace {
     pub fn free(n_wedges: usize) -> Self {
         let n = 2 * n_wedges as u32;
         Self {
-            n_unknowns: n as usize,
+            nodes: (0..n).map(|unknown| unknown / 2).collect(),
             offsets: (0..=n).collect(),
             columns: (0..n).collect(),
             coefficients: vec![1.0; n as usize],
@@ -31,32 +32,37 @@ impl LinearSpace {
     }
 
     fn from_complex(rows: &[Expression], n_pairs: usize) -> Self {
-        let mut space = Self {
-            n_unknowns: 2 * n_pairs,
-            offsets: vec![0],
-            columns: Vec::new(),
-            coefficients: Vec::new(),
+        let parts = |row: &Expression, imaginary: bool| {
+            let part = move |(&pair, &c): (&u32, &Complex64)| {
+                let (re, im) = if imaginary { (c.im, c.re) } else { (c.re, -c.im) };
+                [(2 * pair, re), (2 * pair + 1, im)]
+            };
+            row.iter().flat_map(part).filter(|(_, c)| *c != 0.0).collect()
         };
+        let rows = rows.iter().flat_map(|row| [parts(row, false), parts(row, true)]);
+        Self::from_rows((0..2 * n_pairs as u32).map(|unknown| unknown / 2).collect(), rows)
+    }
+
+    /// From the node of each unknown and the rows, columns with coefficients.
+    pub(super) fn from_rows(nodes: Vec<u32>, rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Self {
+        let mut space =
+            Self { nodes, offsets: vec![0], columns: Vec::new(), coefficients: Vec::new() };
         for row in rows {
-            for imaginary in [false, true] {
-                for (&pair, &c) in row {
-                    let (re, im) = if imaginary { (c.im, c.re) } else { (c.re, -c.im) };
-                    for (column, coefficient) in [(2 * pair, re), (2 * pair + 1, im)] {
-                        if coefficient != 0.0 {
-                            space.columns.push(column);
-                            space.coefficients.push(coefficient);
-                        }
-                    }
-                }
-                space.offsets.push(space.columns.len() as u32);
-            }
+            space.columns.extend(row.iter().map(|(column, _)| column));
+            space.coefficients.extend(row.iter().map(|(_, coefficient)| coefficient));
+            space.offsets.push(space.columns.len() as u32);
         }
         space
     }
 
-    /// Number of real unknowns, even.
+    /// Number of real unknowns.
     pub fn n_unknowns(&self) -> usize {
-        self.n_unknowns
+        self.nodes.len()
+    }
+
+    /// Node of each unknown, ascending without gaps.
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
     }
 
     /// Number of wedges.
@@ -87,7 +93,7 @@ impl LinearSpace {
     pub fn restrict(&self, z: &[Complex64]) -> Vec<f64> {
         let free = |w: usize| !self.row(2 * w).0.is_empty();
         let origin = (0..z.len()).find(|&w| !free(w)).map_or(Complex64::ZERO, |w| z[w]);
-        let mut y = vec![0.0; self.n_unknowns];
+        let mut y = vec![0.0; self.n_unknowns()];
         for (w, z) in z.iter().enumerate() {
             for (row, value) in [(2 * w, (z - origin).re), (2 * w + 1, (z - origin).im)] {
                 if let ([column], [c]) = self.row(row) {
@@ -100,7 +106,7 @@ impl LinearSpace {
 
     /// Transposed product: a vector per wedge pulled back to the unknowns.
     pub fn pull_back(&self, b: &[Complex64]) -> Vec<f64> {
-        let mut out = vec![0.0; self.n_unknowns];
+        let mut out = vec![0.0; self.n_unknowns()];
         for (w, value) in b.iter().enumerate() {
             for (row, x) in [(2 * w, value.re), (2 * w + 1, value.im)] {
                 let (columns, coefficients) = self.row(row);
@@ -337,7 +343,8 @@ pub fn turned_vertices(mesh: &TriMesh, matching: &HalfedgeData<i32>) -> VertexDa
 
 /// Moves matchings into the gauge of a cut's dual tree: zero across the tree, and the gauge itself.
 ///
-/// `gauge[f]` quarter turns are applied to face `f`.
+/// `gauge[f]` quarter turns are applied to face `f`. If there is a ground, it is on the right of half-edges
+/// without a twin, and does not turn.
 pub fn regauge(
     mesh: &TriMesh,
     tree: &crate::cut::DualTree,
@@ -345,14 +352,19 @@ pub fn regauge(
 ) -> (HalfedgeData<i32>, seamstress_surface::FaceData<i32>) {
     let mut gauge = seamstress_surface::FaceData::filled(mesh.n_faces(), 0);
     for &f in &tree.order {
+        if let Some(h) = tree.ground[f] {
+            gauge[f] = matching[h];
+        }
         if let Some(h) = tree.parent[f] {
             gauge[f] = gauge[h.face()] - matching[h];
         }
     }
+    let has_ground = tree.ground.iter().any(Option::is_some);
     let moved = mesh
         .halfedges()
         .map(|h| match mesh.twin(h) {
             Some(t) => matching[h] + gauge[t.face()] - gauge[h.face()],
+            None if has_ground => matching[h] - gauge[h.face()],
             None => 0,
         })
         .collect();

@@ -3,6 +3,7 @@
 use super::component::{Clock, corner_uvs};
 use super::start::smooth;
 use super::{ComponentStats, MapError, by_component};
+use crate::features::Sectors;
 use crate::layout::exact::ExactLayout;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{Cone, SeamlessMap, Tolerance, Violations};
@@ -85,11 +86,12 @@ fn lay_out_field(
     let mut clock = Clock::new();
 
     watch.enter(Stage::Rounding)?;
-    let begun = smooth(mesh, &metric, watch)?;
+    let sectors = Sectors::unaligned(mesh);
+    let begun = smooth(&sectors, &metric, watch)?;
     clock.lap(Stage::Rounding, begun.layouts);
 
     watch.enter(Stage::Layout)?;
-    let mut layout = ExactLayout::new(mesh, &metric, &begun.matched)?;
+    let mut layout = ExactLayout::new(&sectors, &metric, &begun.matched)?;
     // The first global step is the Poisson layout.
     let y = layout.arap(&begun.frames, 1 + options.iterations)?;
     clock.lap(Stage::Layout, 1 + options.iterations);

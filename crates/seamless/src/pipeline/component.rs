@@ -4,31 +4,82 @@ use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
+use crate::features::{
+    FeatureEdges, ReleasedFeature, Sectors, dihedral_angles, drop_conflicts, release_near,
+};
 use crate::layout::exact::ExactLayout;
 use crate::layout::safeguards::{LayoutError, lay_out, way_back};
 use crate::map::{SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
 use num_complex::Complex64;
-use seamstress_surface::{Component, Halfedge, Metric, TriMesh};
+use seamstress_surface::{Component, Halfedge, Metric, TriMesh, VertexData};
 use std::time::Instant;
 
 /// Exponents of the metrics to solve in: the mesh's own, then snowflakes for meshes whose triangles are
 /// too thin for arithmetic.
 const EXPONENTS: [f64; 3] = [1.0, 0.5, 0.3];
+/// Rounds in which features near defects are released, each with a wider ring.
+const RELEASE_ROUNDS: usize = 8;
 
-/// UVs per corner of one component, in mesh units, and how they were made.
+/// The map of one component, in its own ids.
+pub(super) struct ComponentMap {
+    /// UVs per corner, mesh units.
+    pub(super) uvs: Vec<[f64; 2]>,
+    /// The edges that are aligned.
+    pub(super) features: FeatureEdges,
+    /// Those that were to be, but are not.
+    pub(super) released: Vec<ReleasedFeature>,
+    pub(super) stats: ComponentStats,
+}
+
+/// Maps one component: drops features that contradict each other, solves, and releases features around
+/// what went wrong until it goes right.
 pub(super) fn map_component(
     piece: &Component,
     positions: &[[f64; 3]],
     start: &Start,
+    features: &FeatureEdges,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<ComponentMap, LayoutError> {
+    let mesh = &piece.mesh;
+    let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+    let metric = Metric::from_positions(mesh, &positions);
+    let mut features = features.of_component(piece);
+    let mut released =
+        drop_conflicts(mesh, &metric, &dihedral_angles(mesh, &positions), &mut features);
+    for round in 0..=RELEASE_ROUNDS {
+        if features.is_empty() {
+            break;
+        }
+        let sectors = Sectors::new(mesh, &metric, &features);
+        let failure = match solve(&sectors, &metric, 1.0, start, options, watch) {
+            Ok((uvs, stats)) => return Ok(ComponentMap { uvs, features, released, stats }),
+            Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(failure) => failure,
+        };
+        let near = match failure {
+            LayoutError::Defective(defects) if round < RELEASE_ROUNDS => defects.vertices(mesh),
+            _ => VertexData::filled(mesh.n_vertices(), true),
+        };
+        released.extend(release_near(mesh, near, round, &mut features));
+    }
+    let (uvs, stats) = map_unaligned(mesh, &metric, start, options, watch)?;
+    Ok(ComponentMap { uvs, features, released, stats })
+}
+
+/// Maps one component with nothing aligned, in whichever metric it takes.
+fn map_unaligned(
+    mesh: &TriMesh,
+    metric: &Metric,
+    start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
-    let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
-    let metric = Metric::from_positions(&piece.mesh, &positions);
+    let sectors = Sectors::unaligned(mesh);
     let mut first_failure = None;
     for exponent in EXPONENTS {
-        match solve(&piece.mesh, &metric, exponent, start, options, watch) {
+        match solve(&sectors, metric, exponent, start, options, watch) {
             Ok(solved) => return Ok(solved),
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(failure) => first_failure = first_failure.or(Some(failure)),
@@ -37,16 +88,17 @@ pub(super) fn map_component(
     Err(first_failure.unwrap_or(LayoutError::Defective(Default::default())))
 }
 
-/// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the given exponent,
-/// and back to the plain metric.
+/// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the
+/// given exponent, and back to the plain metric.
 fn solve(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     plain: &Metric,
     exponent: f64,
     start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
+    let mesh = sectors.mesh();
     let mut clock = Clock::new();
 
     watch.enter(Stage::Cut)?;
@@ -54,17 +106,18 @@ fn solve(
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
-    let begun = start.begin(mesh, &metric, options, watch)?;
+    let begun = start.begin(sectors, &metric, options, watch)?;
     clock.lap(Stage::Rounding, begun.layouts);
 
     watch.enter(Stage::Layout)?;
-    let laid = lay_out(mesh, &metric, begun.matched, Some(&begun.frames), watch)?;
+    let laid = lay_out(sectors, &metric, begun.matched, Some(&begun.frames), watch)?;
     let mut finished = Finished::new(laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
     if options.cone_price > 0.0 && start.leaves_cones_free() {
         watch.enter(Stage::CleanUp)?;
-        let (better, iterations) = fewer_cones(mesh, &metric, finished, options.cone_price, watch)?;
+        let (better, iterations) =
+            fewer_cones(sectors, &metric, finished, options.cone_price, watch)?;
         finished = better;
         clock.lap(Stage::CleanUp, iterations);
     }

@@ -1,11 +1,12 @@
 //! Cone clean-up with a second layout, kept only if it pays.
 
 use super::finish::Finished;
+use crate::features::Sectors;
 use crate::layout::safeguards::{LayoutError, lay_out};
 use crate::progress::Watch;
 use crate::quarter::turn;
 use crate::rounding::{CleanUpError, CleanUpOptions, clean_up, fix_holonomy};
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_surface::Metric;
 
 /// Bounds on the log scale that clean-up tries, loosest first.
 const SCALE_BOUNDS: [f64; 2] = [f64::INFINITY, 0.35];
@@ -15,7 +16,7 @@ const EXCESS_GROWTH: f64 = 1.2;
 
 /// Cleans the cones up and lays out again; keeps the result only if it is worth its price.
 pub(super) fn fewer_cones(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     before: Finished,
     price: f64,
@@ -25,7 +26,7 @@ pub(super) fn fewer_cones(
     for largest_scale in SCALE_BOUNDS {
         let mut cleaned = before.laid.matched.clone();
         let options = CleanUpOptions { price, largest_scale };
-        let (stats, gauge) = match clean_up(mesh, metric, &mut cleaned, &options, watch) {
+        let (stats, gauge) = match clean_up(sectors, metric, &mut cleaned, &options, watch) {
             Ok(done) => done,
             Err(CleanUpError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(CleanUpError::Numeric(_)) => break,
@@ -33,11 +34,11 @@ pub(super) fn fewer_cones(
         if stats.cancelled + stats.moved == 0 {
             break;
         }
-        fix_holonomy(mesh, metric, &mut cleaned)?;
+        fix_holonomy(sectors, metric, &mut cleaned)?;
         let frames = before.laid.layout.frames(&before.laid.y);
         let frames: Vec<_> =
             frames.into_iter().zip(gauge.iter()).map(|(r, &k)| turn(r, k)).collect();
-        let after = match lay_out(mesh, metric, cleaned, Some(&frames), watch) {
+        let after = match lay_out(sectors, metric, cleaned, Some(&frames), watch) {
             Ok(laid) => Finished::new(laid, watch)?,
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(_) => continue,

@@ -9,6 +9,7 @@ mod start;
 pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
 pub use start::Start;
 
+use crate::features::{FeatureEdges, ReleasedFeature};
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
 use crate::layout::safeguards::{LayoutError, Route};
@@ -28,6 +29,9 @@ pub struct MapOptions {
     /// cones as rounded. Whatever the price, clean-up is undone where it raises tau by more than 5 % or
     /// the energy's excess over 4 by more than 20 %.
     pub cone_price: f64,
+    /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`]) rather than a
+    /// line in the result.
+    pub strict_features: bool,
     /// Tolerance of the certificate.
     pub tolerance: Tolerance,
 }
@@ -37,6 +41,7 @@ impl Default for MapOptions {
         Self {
             rounding: RoundingOptions::default(),
             cone_price: 0.0006,
+            strict_features: false,
             tolerance: Tolerance::default(),
         }
     }
@@ -50,6 +55,10 @@ pub struct MapSolution {
     pub map: SeamlessMap,
     /// Its distortion.
     pub distortion: Distortion,
+    /// The edges that run along the axes: every feature edge asked for that was not released.
+    pub features: FeatureEdges,
+    /// Feature edges that could not be aligned, component by component.
+    pub released: Vec<ReleasedFeature>,
     /// One entry per connected component, in order of first faces.
     pub components: Vec<ComponentStats>,
 }
@@ -125,29 +134,61 @@ pub enum MapError {
     /// The cones asked for, or those of the field to start from, cannot be had.
     #[error(transparent)]
     Cones(#[from] PrescriptionError),
+    /// Feature edges could not be aligned, and [`MapOptions::strict_features`] asked for all of them.
+    #[error("{} feature edges could not be aligned{}", released.len(), listed(released))]
+    Released {
+        /// The edges.
+        released: Vec<ReleasedFeature>,
+    },
     /// The result did not pass the certificate. Nothing is returned then.
     #[error("the map failed its certificate: {0}")]
     Uncertified(#[from] Violations),
 }
 
-/// Makes a seamless map of every component of a mesh, by the direct method.
-///
-/// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
-/// Dirichlet energy, components side by side. The observer is called in every iteration of
-/// every long loop and may break to cancel.
+/// The first few released features of a list.
+fn listed(released: &[ReleasedFeature]) -> String {
+    const SHOWN: usize = 5;
+    let name = |r: &ReleasedFeature| format!("{}-{} ({})", r.vertices[0], r.vertices[1], r.reason);
+    let shown: Vec<String> = released.iter().take(SHOWN).map(name).collect();
+    let more = if released.len() > SHOWN { ", ..." } else { "" };
+    format!(": {}{more}", shown.join(", "))
+}
+
+/// Makes a seamless map of every component of a mesh, with nothing aligned; see [`make_aligned_map`].
 ///
 /// # Errors
 /// [`MapError`]; never an uncertified map.
-///
-/// # Source
-/// Levi 2021, supplement; the steps are those of `docs/theory`.
 pub fn make_map(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    make_map_from(mesh, positions, &Start::Mesh, options, observer)
+    make_aligned_map(mesh, positions, &FeatureEdges::none(mesh), options, observer)
+}
+
+/// Makes a seamless map of every component of a mesh in which feature edges run along the axes.
+///
+/// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
+/// Dirichlet energy, components side by side. The observer is called in every iteration of
+/// every long loop and may break to cancel.
+///
+/// Feature edges that contradict each other, or for which no layout is found, are released; the solution
+/// names each with the reason.
+///
+/// # Errors
+/// [`MapError`]; never an uncertified map.
+///
+/// # Source
+/// Levi 2021, supplement; the steps are those of `docs/theory`.
+pub fn make_aligned_map(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    features: &FeatureEdges,
+    options: &MapOptions,
+    observer: &mut Observer<'_>,
+) -> Result<MapSolution, MapError> {
+    run(mesh, positions, &Start::Mesh, features, options, observer)
 }
 
 /// Makes a seamless map from what the caller has: a cross field, or cones; otherwise as [`make_map`].
@@ -165,13 +206,35 @@ pub fn make_map_from(
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
     start.check(mesh)?;
+    run(mesh, positions, start, &FeatureEdges::none(mesh), options, observer)
+}
+
+fn run(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    start: &Start,
+    features: &FeatureEdges,
+    options: &MapOptions,
+    observer: &mut Observer<'_>,
+) -> Result<MapSolution, MapError> {
+    let (mut kept, mut released) = (FeatureEdges::none(mesh), Vec::new());
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
-        map_component(piece, positions, &start.restrict(piece), options, watch)
+        let mapped =
+            map_component(piece, positions, &start.restrict(piece), features, options, watch)?;
+        kept.add_component(piece, &mapped.features);
+        released.extend(mapped.released.into_iter().map(|mut feature| {
+            feature.vertices = feature.vertices.map(|v| piece.vertices[Vertex(v)].0);
+            feature
+        }));
+        Ok((mapped.uvs, mapped.stats))
     })?;
+    if options.strict_features && !released.is_empty() {
+        return Err(MapError::Released { released });
+    }
     let metric = Metric::from_positions(mesh, positions);
     let distortion = distortion(mesh, &metric, &corner_uvs);
     let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    Ok(MapSolution { map, distortion, components })
+    Ok(MapSolution { map, distortion, features: kept, released, components })
 }
 
 type Piecewise<S> = Result<(Vec<[f64; 2]>, S), LayoutError>;

@@ -1,11 +1,12 @@
 //! What a map starts from, and the matchings it leads to.
 
 use super::{MapError, MapOptions};
-use crate::cut::{DualTree, curvature_weight};
+use crate::features::Sectors;
 use crate::field::{
     ConePrescription, CrossField, FieldError, check_angle, impose, matched_cut, smooth_field,
     smooth_frames,
 };
+use crate::layout::exact::Defects;
 use crate::layout::safeguards::LayoutError;
 use crate::progress::Watch;
 use crate::rounding::{MatchedCut, fix_holonomy, repair, round};
@@ -78,31 +79,27 @@ impl Start {
     /// Integer matchings for a connected mesh.
     pub(super) fn begin(
         &self,
-        mesh: &TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         options: &MapOptions,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Begun, LayoutError> {
+        let mesh = sectors.mesh();
         match self {
             Start::Mesh => {
-                let mut begun = rounded(mesh, metric, options, watch)?;
-                begun.shifted_seams = repair(mesh, metric, &mut begun.matched).0;
-                Ok(begun)
+                let begun = rounded(sectors, metric, options, watch)?;
+                begun.repaired(sectors, metric)
             }
-            Start::SmoothField => {
-                let mut begun = smooth(mesh, metric, watch)?;
-                begun.shifted_seams = repair(mesh, metric, &mut begun.matched).0;
-                Ok(begun)
-            }
+            Start::SmoothField => smooth(sectors, metric, watch)?.repaired(sectors, metric),
             Start::Field(field) => {
                 let (matched, frames) = matched_cut(mesh, metric, field);
                 Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams: 0 })
             }
             Start::Cones(cones) => {
-                let mut begun = rounded(mesh, metric, options, watch)?;
-                begun.shifted_seams = impose(mesh, metric, &mut begun.matched, cones)?;
+                let mut begun = rounded(sectors, metric, options, watch)?;
+                begun.shifted_seams = impose(sectors, metric, &mut begun.matched, cones)?;
                 if begun.shifted_seams > 0 {
-                    fix_holonomy(mesh, metric, &mut begun.matched)?;
+                    fix_holonomy(sectors, metric, &mut begun.matched)?;
                     begun.frames = smooth_frames(mesh, metric, &begun.matched)?;
                 }
                 Ok(begun)
@@ -111,29 +108,41 @@ impl Start {
     }
 }
 
+impl Begun {
+    /// With indices that the triangles can have. At aligned edges what cannot be repaired is a failure:
+    /// edges are released then.
+    fn repaired(mut self, sectors: &Sectors<'_>, metric: &Metric) -> Result<Self, LayoutError> {
+        let (shifted, hopeless) = repair(sectors, metric, &mut self.matched);
+        if sectors.any_aligned() && !hopeless.is_empty() {
+            let wrong_angles = hopeless.into_iter().map(|s| sectors.vertex(s)).collect();
+            return Err(LayoutError::Defective(Defects { flips: Vec::new(), wrong_angles }));
+        }
+        self.shifted_seams = shifted;
+        Ok(self)
+    }
+}
+
 /// The matchings of the direct method.
 fn rounded(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Begun, LayoutError> {
-    let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
-    let mut matched = MatchedCut::new(mesh, metric, tree);
-    let (frames, stats) = round(mesh, metric, &mut matched, &options.rounding, watch)?;
+    let mut matched = MatchedCut::through_curved_sectors(sectors, metric);
+    let (frames, stats) = round(sectors, metric, &mut matched, &options.rounding, watch)?;
     let (rounds, layouts) = (stats.rounds, stats.layouts);
     Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0 })
 }
 
 /// The matchings of a smooth cross field.
 pub(super) fn smooth(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Begun, LayoutError> {
-    let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
-    let mut matched = MatchedCut::new(mesh, metric, tree);
-    let (frames, stats) = smooth_field(mesh, metric, &mut matched, watch)?;
+    let mut matched = MatchedCut::through_curved_sectors(sectors, metric);
+    let (frames, stats) = smooth_field(sectors.mesh(), metric, &mut matched, watch)?;
     let (rounds, layouts) = (stats.rounds, stats.solves);
     Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0 })
 }

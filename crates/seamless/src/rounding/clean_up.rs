@@ -1,13 +1,12 @@
 //! Fewer and better placed cones, judged by the surrogate.
 
 use super::matched::MatchedCut;
-use super::repair::index_bounds;
 use super::surrogate::{Response, Surrogate};
 use crate::cut::Ordered;
-use crate::layout::space::regauge;
+use crate::features::{Road, Sectors};
 use crate::progress::{Cancelled, Watch};
 use seamstress_numerics::NotPositiveDefinite;
-use seamstress_surface::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_surface::{FaceData, HalfedgeData, Metric, Vertex, VertexData};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, HashMap};
 use std::f64::consts::FRAC_PI_2;
@@ -61,14 +60,14 @@ const LARGEST_DEVIATION: f64 = 1.5;
 /// the price per cone removed; changes the matchings along the way. Returns also the quarter turns
 /// by which the faces' gauge changed.
 pub fn clean_up(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &mut MatchedCut,
     options: &CleanUpOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(CleanUpStats, FaceData<i32>), CleanUpError> {
-    let index = matched.cone_indices(mesh, metric);
-    let mut work = CleanUp::new(mesh, metric, index, *options)?;
+    let index = matched.sector_indices(sectors, metric);
+    let mut work = CleanUp::new(sectors, metric, index, *options)?;
     let mut stats = CleanUpStats { cones_before: work.n_cones(), ..Default::default() };
     for sweep in 0..SWEEPS {
         watch.tick(sweep as f64 / SWEEPS as f64)?;
@@ -80,25 +79,12 @@ pub fn clean_up(
         }
     }
     stats.cones_after = work.n_cones();
-    let gauge = apply(mesh, matched, &work.transport);
+    let gauge = matched.turn(sectors, &work.transport);
     Ok((stats, gauge))
 }
 
-/// Adds units of flow to the matchings and returns to the gauge of the cut's tree.
-fn apply(mesh: &TriMesh, matched: &mut MatchedCut, transport: &HalfedgeData<i32>) -> FaceData<i32> {
-    let mut full = matched.matching_per_halfedge(mesh);
-    for h in mesh.halfedges() {
-        full[h] += transport[h];
-    }
-    let (moved, gauge) = regauge(mesh, &matched.tree, &full);
-    for (r, &h) in matched.matching.iter_mut().zip(&matched.cut.seams) {
-        *r = moved[h];
-    }
-    gauge
-}
-
 struct CleanUp<'a> {
-    mesh: &'a TriMesh,
+    sectors: &'a Sectors<'a>,
     metric: &'a Metric,
     surrogate: Surrogate<'a>,
     index: VertexData<i32>,
@@ -112,17 +98,17 @@ struct CleanUp<'a> {
 
 impl<'a> CleanUp<'a> {
     fn new(
-        mesh: &'a TriMesh,
+        sectors: &'a Sectors<'a>,
         metric: &'a Metric,
         index: VertexData<i32>,
         options: CleanUpOptions,
     ) -> Result<Self, NotPositiveDefinite> {
         Ok(Self {
-            surrogate: Surrogate::new(mesh, metric, &index)?,
-            curvature: metric.curvature(mesh).iter().map(|k| k / FRAC_PI_2).collect(),
-            transport: HalfedgeData::filled(mesh.n_halfedges(), 0),
+            surrogate: Surrogate::new(sectors, metric, &index)?,
+            curvature: metric.curvature(sectors.slit()).iter().map(|k| k / FRAC_PI_2).collect(),
+            transport: HalfedgeData::filled(sectors.slit().n_halfedges(), 0),
             responses: HashMap::new(),
-            mesh,
+            sectors,
             metric,
             index,
             options,
@@ -130,15 +116,21 @@ impl<'a> CleanUp<'a> {
     }
 
     fn n_cones(&self) -> usize {
-        self.index.iter().filter(|&&k| k != 0).count()
+        self.cones().len()
     }
 
+    /// Index beyond the preferred one: what makes a cone or a false corner. Free sectors have none.
+    fn excess(&self, s: Vertex) -> i32 {
+        self.index[s] - self.sectors.preferred(s)
+    }
+
+    /// Sectors with another index than the preferred one.
     fn cones(&self) -> Vec<Vertex> {
-        self.mesh.vertices().filter(|&v| self.index[v] != 0).collect()
+        self.sectors.slit().vertices().filter(|&s| self.excess(s) != 0).collect()
     }
 
     fn allows(&self, v: Vertex, index: i32) -> bool {
-        let (low, high) = index_bounds(self.mesh.valence(v));
+        let (low, high) = self.sectors.bounds(v);
         let deviation = (f64::from(index) - self.curvature[v]).abs();
         (low..=high).contains(&index) && deviation < LARGEST_DEVIATION
     }
@@ -146,9 +138,8 @@ impl<'a> CleanUp<'a> {
     /// Cones fewer after sending a unit from one vertex to another.
     fn removed(&self, from: Vertex, to: Vertex) -> i32 {
         let count = |k: i32| i32::from(k != 0);
-        count(self.index[from]) + count(self.index[to])
-            - count(self.index[from] - 1)
-            - count(self.index[to] + 1)
+        let (from, to) = (self.excess(from), self.excess(to));
+        count(from) + count(to) - count(from - 1) - count(to + 1)
     }
 
     /// Most that sending a unit may add to the energy.
@@ -189,11 +180,11 @@ impl<'a> CleanUp<'a> {
         self.surrogate.linear(from, to) + response.quadratic
     }
 
-    fn send(&mut self, from: Vertex, to: Vertex, path: &[Halfedge]) {
-        for &h in path {
-            self.transport[h] += 1;
-            if let Some(t) = self.mesh.twin(h) {
-                self.transport[t] -= 1;
+    fn send(&mut self, from: Vertex, to: Vertex, path: &[Road]) {
+        for road in path {
+            self.transport[road.halfedge] += road.sign;
+            if let Some(t) = self.sectors.slit().twin(road.halfedge) {
+                self.transport[t] -= road.sign;
             }
         }
         self.index[from] -= 1;
@@ -204,7 +195,7 @@ impl<'a> CleanUp<'a> {
     /// One sweep of cancellations, best first.
     fn cancel(&mut self, watch: &mut Watch<'_, '_>) -> Result<usize, Cancelled> {
         let mut pairs = BTreeMap::new();
-        for from in self.cones().into_iter().filter(|&v| self.index[v] > 0) {
+        for from in self.cones().into_iter().filter(|&v| self.excess(v) > 0) {
             for (to, path) in self.near_negative(from) {
                 pairs.insert((from, to), path);
             }
@@ -219,7 +210,7 @@ impl<'a> CleanUp<'a> {
             watch.pulse()?;
             let fits =
                 self.allows(from, self.index[from] - 1) && self.allows(to, self.index[to] + 1);
-            let opposite = self.index[from] > 0 && self.index[to] < 0;
+            let opposite = self.excess(from) > 0 && self.excess(to) < 0;
             if fits && opposite && self.change(from, to) < self.budget(from, to) {
                 self.send(from, to, &pairs[&(from, to)]);
                 count += 1;
@@ -229,44 +220,40 @@ impl<'a> CleanUp<'a> {
     }
 
     /// Negative cones near a positive one, with shortest paths to them.
-    fn near_negative(&self, start: Vertex) -> Vec<(Vertex, Vec<Halfedge>)> {
-        let mut reached: HashMap<Vertex, (f64, Option<Halfedge>)> =
-            HashMap::from([(start, (0.0, None))]);
+    fn near_negative(&self, start: Vertex) -> Vec<(Vertex, Vec<Road>)> {
+        // Distance, and the road taken from which sector.
+        type Reached = HashMap<Vertex, (f64, Option<(Vertex, Road)>)>;
+        let mut reached = Reached::from([(start, (0.0, None))]);
         let mut queue = BinaryHeap::from([Reverse((Ordered(0.0), start))]);
         let (mut found, mut visited) = (Vec::new(), 0);
-        while let Some(Reverse((Ordered(d), v))) = queue.pop() {
-            if d > reached[&v].0 {
+        let trace = |reached: &Reached, mut s: Vertex| {
+            let mut path = Vec::new();
+            while let Some((from, road)) = reached[&s].1 {
+                path.push(road);
+                s = from;
+            }
+            path
+        };
+        while let Some(Reverse((Ordered(d), s))) = queue.pop() {
+            if d > reached[&s].0 {
                 continue;
             }
             visited += 1;
-            if self.index[v] < 0 {
-                found.push((v, self.trace(&reached, v)));
+            if self.excess(s) < 0 {
+                found.push((s, trace(&reached, s)));
             }
             if found.len() == PARTNERS || visited > SEARCH_LIMIT {
                 break;
             }
-            for h in self.mesh.outgoing(v).filter(|&h| self.mesh.twin(h).is_some()) {
-                let (w, reach) = (self.mesh.tip(h), d + self.metric.length[h]);
-                if reached.get(&w).is_none_or(|r| reach < r.0) {
-                    reached.insert(w, (reach, Some(h)));
-                    queue.push(Reverse((Ordered(reach), w)));
+            for road in self.sectors.roads(s) {
+                let reach = d + self.metric.length[road.halfedge];
+                if reached.get(&road.to).is_none_or(|r| reach < r.0) {
+                    reached.insert(road.to, (reach, Some((s, road))));
+                    queue.push(Reverse((Ordered(reach), road.to)));
                 }
             }
         }
         found
-    }
-
-    fn trace(
-        &self,
-        reached: &HashMap<Vertex, (f64, Option<Halfedge>)>,
-        mut v: Vertex,
-    ) -> Vec<Halfedge> {
-        let mut path = Vec::new();
-        while let Some(h) = reached[&v].1 {
-            path.push(h);
-            v = self.mesh.origin(h);
-        }
-        path
     }
 
     /// A few passes in which every cone may move to a neighbour once.
@@ -279,12 +266,12 @@ impl<'a> CleanUp<'a> {
             let mut count = 0;
             for v in self.cones() {
                 watch.pulse()?;
-                let Some(&(from, to, h)) = self.steps(v).first() else {
+                let Some(&(from, to, road)) = self.steps(v).first() else {
                     continue;
                 };
                 self.prepare(&[(from, to)]);
                 if self.change(from, to) < self.budget(from, to) - LEAST_GAIN {
-                    self.send(from, to, &[h]);
+                    self.send(from, to, &[road]);
                     count += 1;
                 }
             }
@@ -296,30 +283,38 @@ impl<'a> CleanUp<'a> {
         Ok(total)
     }
 
-    /// The two most promising ways to move one unit of a cone to a neighbour, as (from, to, path).
-    fn steps(&self, v: Vertex) -> Vec<(Vertex, Vertex, Halfedge)> {
-        let sign = self.index[v].signum();
-        let promise = |s: &(Vertex, Vertex, Halfedge)| {
-            self.surrogate.linear(s.0, s.1) - self.budget(s.0, s.1)
+    /// The two most promising ways to move one unit of a cone to a neighbour, as (from, to, road).
+    fn steps(&self, s: Vertex) -> Vec<(Vertex, Vertex, Road)> {
+        let sign = self.excess(s).signum();
+        let promise = |step: &(Vertex, Vertex, Road)| {
+            self.surrogate.linear(step.0, step.1) - self.budget(step.0, step.1)
         };
         let mut steps: Vec<_> = self
-            .mesh
-            .outgoing(v)
-            .filter_map(|h| Some((h, self.mesh.twin(h)?)))
-            .filter(|&(h, _)| {
-                let w = self.mesh.tip(h);
-                !self.mesh.is_boundary(w)
-                    && self.index[w] * sign <= 0
-                    && self.allows(w, self.index[w] + sign)
-                    && self.allows(v, self.index[v] - sign)
+            .sectors
+            .roads(s)
+            .filter(|road| {
+                !self.sectors.is_free(road.to)
+                    && self.excess(road.to) * sign <= 0
+                    && self.allows(road.to, self.index[road.to] + sign)
+                    && self.allows(s, self.index[s] - sign)
             })
-            .map(|(h, t)| {
-                let w = self.mesh.tip(h);
-                if sign > 0 { (v, w, h) } else { (w, v, t) }
-            })
+            .map(
+                |road| if sign > 0 { (s, road.to, road) } else { (road.to, s, self.back(s, road)) },
+            )
             .collect();
-        steps.sort_by(|x, y| promise(x).total_cmp(&promise(y)).then(x.2.cmp(&y.2)));
+        steps.sort_by(|x, y| {
+            let halfedges = x.2.halfedge.cmp(&y.2.halfedge);
+            promise(x).total_cmp(&promise(y)).then(halfedges)
+        });
         steps.truncate(2);
         steps
+    }
+
+    /// The road from the far end of one that leaves a sector back to it.
+    fn back(&self, s: Vertex, road: Road) -> Road {
+        match self.sectors.slit().twin(road.halfedge) {
+            Some(t) => Road { to: s, halfedge: t, sign: road.sign },
+            None => Road { to: s, halfedge: road.halfedge, sign: -road.sign },
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! Choosing the rotations around handles and between boundaries for fixed cones.
 
 use super::matched::MatchedCut;
+use crate::features::Sectors;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
-use seamstress_surface::{Halfedge, Metric, TriMesh};
+use seamstress_surface::{Halfedge, Metric, Vertex};
 use std::collections::VecDeque;
 
 /// Weights of dual edges are inverse cotangent sums, these kept in this range.
@@ -17,22 +18,22 @@ const PASSES: usize = 50;
 ///
 /// The matchings' difference to the isometric rotations is a flow on dual edges; what remains of it
 /// after the best rotation of every face is its divergence-free part, whose weighted square is made
-/// small over integer multiples of the seam graph's cycles (paths between boundaries are cycles too).
+/// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too).
 /// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
 /// moves. Returns how many cycles changed.
 ///
 /// # Errors
 /// When the face Laplacian cannot be factored.
 pub fn fix_holonomy(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &mut MatchedCut,
 ) -> Result<usize, NotPositiveDefinite> {
-    let cycles = seam_cycles(mesh, matched);
+    let cycles = turning_cycles(sectors, matched);
     if cycles.is_empty() {
         return Ok(0);
     }
-    let projector = Projector::new(mesh, metric, matched)?;
+    let projector = Projector::new(sectors, metric, matched)?;
     let flow: Vec<(u32, f64)> = matched
         .matching
         .iter()
@@ -61,13 +62,14 @@ pub fn fix_holonomy(
     Ok(multiples.iter().filter(|&&n| n != 0).count())
 }
 
-/// A basis of the cycles of the seam graph, the boundary merged to one vertex: signed seams.
-fn seam_cycles(mesh: &TriMesh, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
-    let boundary = mesh.n_vertices() as u32;
-    let id = |v: seamstress_surface::Vertex| if mesh.is_boundary(v) { boundary } else { v.0 };
+/// A basis of the cycles of the graph of turning edges, the free sectors merged to one: signed edges.
+fn turning_cycles(sectors: &Sectors<'_>, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
+    let slit = sectors.slit();
+    let free = slit.n_vertices() as u32;
+    let id = |s: Vertex| if sectors.is_free(s) { free } else { s.0 };
     let ends: Vec<[u32; 2]> =
-        matched.cut.seams.iter().map(|&h| [id(mesh.origin(h)), id(mesh.tip(h))]).collect();
-    let mut at = vec![Vec::new(); mesh.n_vertices() + 1];
+        matched.turning.iter().map(|&h| [id(slit.origin(h)), id(slit.tip(h))]).collect();
+    let mut at = vec![Vec::new(); slit.n_vertices() + 1];
     for (s, &[a, b]) in ends.iter().enumerate() {
         at[a as usize].push((b, s as u32, 1));
         at[b as usize].push((a, s as u32, -1));
@@ -114,43 +116,46 @@ fn seam_cycles(mesh: &TriMesh, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
     (0..ends.len()).filter(|&s| !in_forest[s]).map(close).collect()
 }
 
-/// Projects flows on dual edges to their part that no rotation of faces can remove.
-struct Projector<'a> {
-    mesh: &'a TriMesh,
-    edges: Vec<Halfedge>,
-    edge_of_seam: Vec<u32>,
+/// Projects flows on dual edges to their part that no rotation of faces can remove; the ground does not
+/// rotate.
+struct Projector {
+    /// Faces on the left and right of each dual edge; the ground follows on the faces.
+    sides: Vec<[u32; 2]>,
+    /// Dual edge of each turning edge.
+    of_turning: Vec<u32>,
     weights: Vec<f64>,
+    nodes: usize,
     cholesky: Cholesky<f64>,
 }
 
-impl<'a> Projector<'a> {
+impl Projector {
     fn new(
-        mesh: &'a TriMesh,
+        sectors: &Sectors<'_>,
         metric: &Metric,
         matched: &MatchedCut,
     ) -> Result<Self, NotPositiveDefinite> {
-        let edges: Vec<Halfedge> = mesh.interior_edges().collect();
+        let slit = sectors.slit();
+        let ground = slit.n_faces() as u32;
+        let nodes = slit.n_faces() + usize::from(sectors.any_aligned());
+        let edges: Vec<Halfedge> = slit.interior_edges().chain(sectors.aligned()).collect();
         let cotangent = metric.cotangent();
-        let faces = |h: Halfedge| {
-            let right = mesh.twin(h).map_or(h, |t| t);
-            [h.face().0, right.face().0]
-        };
+        let side = |h: Halfedge| [h.face().0, slit.twin(h).map_or(ground, |t| t.face().0)];
+        let sides: Vec<[u32; 2]> = edges.iter().map(|&h| side(h)).collect();
         let weights: Vec<f64> = edges
             .iter()
             .map(|&h| {
-                let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
+                let sum = cotangent[h] + slit.twin(h).map_or(0.0, |t| cotangent[t]);
                 2.0 / sum.clamp(COTANGENT_RANGE.0, COTANGENT_RANGE.1)
             })
             .collect();
-        let pattern = dual_pattern(mesh.n_faces(), edges.iter().map(|&h| faces(h)));
-        let pairs: Vec<_> = edges.iter().map(|&h| faces(h).into()).collect();
-        let order = nested_dissection(&Graph::from_edges(mesh.n_faces(), pairs.into_iter()));
+        let pattern = dual_pattern(nodes, sides.iter().copied());
+        let pairs = sides.iter().map(|&[f, g]| (f, g));
+        let order = nested_dissection(&Graph::from_edges(nodes, pairs));
         let mut matrix = vec![0.0; pattern.len()];
         for &k in pattern.diagonal() {
             matrix[k as usize] = 1e-10;
         }
-        for (&h, weight) in edges.iter().zip(&weights) {
-            let [f, g] = faces(h);
+        for (&[f, g], weight) in sides.iter().zip(&weights) {
             matrix[pattern.diagonal()[f as usize] as usize] += weight;
             matrix[pattern.diagonal()[g as usize] as usize] += weight;
             if let Some(slot) = pattern.slot(f, g) {
@@ -159,28 +164,27 @@ impl<'a> Projector<'a> {
         }
         let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         cholesky.factorize(&pattern, &matrix)?;
-        let mut seam_number = vec![0u32; mesh.n_halfedges()];
-        edges.iter().enumerate().for_each(|(e, &h)| seam_number[h.at()] = e as u32);
-        let edge_of_seam = matched.cut.seams.iter().map(|&h| seam_number[h.at()]).collect();
-        Ok(Self { mesh, edges, edge_of_seam, weights, cholesky })
+        let mut number = vec![0u32; slit.n_halfedges()];
+        edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
+        let of_turning = matched.turning.iter().map(|&h| number[h.at()]).collect();
+        Ok(Self { sides, of_turning, weights, nodes, cholesky })
     }
 
-    /// Square root of the weight times the remaining flow, per interior edge.
+    /// Square root of the weight times the remaining flow, per dual edge.
     fn residual(&self, flow: &[(u32, f64)]) -> Vec<f64> {
-        let mut x = vec![0.0; self.edges.len()];
-        for &(s, value) in flow {
-            x[self.edge_of_seam[s as usize] as usize] += value;
+        let mut x = vec![0.0; self.sides.len()];
+        for &(e, value) in flow {
+            x[self.of_turning[e as usize] as usize] += value;
         }
-        let right = |h: Halfedge| self.mesh.twin(h).map_or(h, |t| t).face();
-        let mut turn = vec![0.0; self.mesh.n_faces()];
-        for ((&h, x), w) in self.edges.iter().zip(&x).zip(&self.weights) {
-            turn[right(h).at()] += w * x;
-            turn[h.face().at()] -= w * x;
+        let mut turn = vec![0.0; self.nodes];
+        for ((&[left, right], x), w) in self.sides.iter().zip(&x).zip(&self.weights) {
+            turn[right as usize] += w * x;
+            turn[left as usize] -= w * x;
         }
         // The only failure is memory, which the factor needed far more of.
         let _ = self.cholesky.solve_columns(&mut turn, 1);
-        for ((&h, x), w) in self.edges.iter().zip(&mut x).zip(&self.weights) {
-            *x = (*x - (turn[right(h).at()] - turn[h.face().at()])) * w.sqrt();
+        for ((&[left, right], x), w) in self.sides.iter().zip(&mut x).zip(&self.weights) {
+            *x = (*x - (turn[right as usize] - turn[left as usize])) * w.sqrt();
         }
         x
     }

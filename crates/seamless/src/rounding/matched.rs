@@ -1,71 +1,103 @@
 //! A cut with a matching on every seam.
 
-use crate::cut::{Cut, DualTree};
+use crate::cut::{Cut, DualTree, curvature_weight};
+use crate::features::Sectors;
 use crate::layout::isometric;
-use seamstress_surface::{HalfedgeData, Metric, TriMesh, VertexData};
+use crate::layout::space::regauge;
+use seamstress_surface::{FaceData, Halfedge, HalfedgeData, Metric, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
-/// A mesh cut along every edge that a dual tree does not cross, with the rotation of each seam in the
-/// isometric layout and, once rounded, its integer matching.
+/// A slit mesh cut along every edge that a dual tree does not cross, with the rotation of each cut edge in
+/// the isometric layout and, once rounded, its integer matching.
+///
+/// The rotation of a seam leads from its left to its right image; that of an aligned half-edge from its
+/// image to the u axis, which is its image on the ground: an edge of direction `a` quarters has rotation
+/// `-a`. (The rotation across an interior feature follows from those of its two halves.)
 #[derive(Debug, Clone)]
 pub struct MatchedCut {
-    /// The dual tree.
+    /// The dual tree of the faces and the ground.
     pub tree: DualTree,
-    /// The cut: every interior edge off the tree is a seam.
+    /// The cut of the slit mesh: every interior edge off the tree is a seam.
     pub cut: Cut,
-    /// Lifted rotation of each seam in the isometric layout, quarter turns.
+    /// The half-edges that turn: the left ones of the seams, in their order, then the aligned ones by
+    /// which no face hangs on the ground.
+    pub turning: Vec<Halfedge>,
+    /// Lifted rotation of each of them in the isometric layout, quarter turns.
     pub isometric: Vec<f64>,
-    /// Lifted integer matching of each seam.
+    /// Lifted integer matching of each of them.
     pub matching: Vec<i32>,
 }
 
 impl MatchedCut {
     /// Cuts along a dual tree; the matchings are the nearest integers.
-    pub fn new(mesh: &TriMesh, metric: &Metric, tree: DualTree) -> Self {
-        let cut = Cut::new(mesh, |h| tree.crossed[h]);
-        let isometric = isometric::seam_rotations(mesh, metric, &tree, &cut);
+    pub fn new(sectors: &Sectors<'_>, metric: &Metric, tree: DualTree) -> Self {
+        let cut = Cut::new(sectors.slit(), |h| tree.crossed[h]);
+        let mut turning = cut.seams.clone();
+        turning.extend(sectors.aligned().filter(|&h| !tree.crossed[h]));
+        let isometric = isometric::rotations(sectors.slit(), metric, &tree, &turning);
         let matching = isometric.iter().map(|r| r.round() as i32).collect();
-        Self { tree, cut, isometric, matching }
+        Self { tree, cut, turning, isometric, matching }
+    }
+
+    /// Cuts along the tree that leaves seams to curved sectors; the faces at aligned edges hang on the
+    /// ground, by the longest first.
+    pub fn through_curved_sectors(sectors: &Sectors<'_>, metric: &Metric) -> Self {
+        let grounding = sectors.aligned().map(|h| (-metric.length[h], h));
+        let weight = curvature_weight(sectors.slit(), metric);
+        Self::new(sectors, metric, DualTree::grounded(sectors.slit(), grounding, weight))
     }
 
     /// The same matchings over another metric of the same mesh.
-    pub fn with_metric(&self, mesh: &TriMesh, metric: &Metric) -> Self {
-        let isometric = isometric::seam_rotations(mesh, metric, &self.tree, &self.cut);
+    pub fn with_metric(&self, sectors: &Sectors<'_>, metric: &Metric) -> Self {
+        let isometric = isometric::rotations(sectors.slit(), metric, &self.tree, &self.turning);
         Self { isometric, ..self.clone() }
     }
 
-    /// Index of every vertex, in quarters, for seam rotations `r` (any reals):
-    /// `k = 2 K / pi - sum over seams from v of (r - r0) + sum over seams to v of (r - r0)`.
+    /// Index of every sector, in quarters, for rotations `r` (any reals):
+    /// `k = 2 K / pi - sum over turning edges from v of (r - r0) + sum over those to v of (r - r0)`.
     ///
-    /// At integer matchings the index of an interior vertex is an integer; the sum over all vertices is
-    /// 4 chi.
-    pub fn indices(&self, mesh: &TriMesh, metric: &Metric, r: &[f64]) -> VertexData<f64> {
+    /// At integer matchings the index of a sector that is not free is an integer; the sum over all
+    /// sectors is 4 chi of the slit mesh.
+    pub fn indices(&self, sectors: &Sectors<'_>, metric: &Metric, r: &[f64]) -> VertexData<f64> {
+        let slit = sectors.slit();
         let mut k: VertexData<f64> =
-            metric.curvature(mesh).iter().map(|defect| defect / FRAC_PI_2).collect();
-        for (s, &h) in self.cut.seams.iter().enumerate() {
+            metric.curvature(slit).iter().map(|defect| defect / FRAC_PI_2).collect();
+        for (s, &h) in self.turning.iter().enumerate() {
             let d = r[s] - self.isometric[s];
-            k[mesh.origin(h)] -= d;
-            k[mesh.tip(h)] += d;
+            k[slit.origin(h)] -= d;
+            k[slit.tip(h)] += d;
         }
         k
     }
 
-    /// Index of every interior vertex at the integer matchings; zero on the boundary.
-    pub fn cone_indices(&self, mesh: &TriMesh, metric: &Metric) -> VertexData<i32> {
+    /// Index of every sector at the integer matchings; zero where it is free.
+    pub fn sector_indices(&self, sectors: &Sectors<'_>, metric: &Metric) -> VertexData<i32> {
         let r: Vec<f64> = self.matching.iter().map(|&r| f64::from(r)).collect();
-        let k = self.indices(mesh, metric, &r);
-        mesh.vertices().map(|v| if mesh.is_boundary(v) { 0 } else { k[v].round() as i32 }).collect()
+        let k = self.indices(sectors, metric, &r);
+        k.enumerate().map(|(s, k)| if sectors.is_free(s) { 0 } else { k.round() as i32 }).collect()
     }
 
-    /// The matchings per half-edge: negated on twins, zero across the tree.
-    pub fn matching_per_halfedge(&self, mesh: &TriMesh) -> HalfedgeData<i32> {
-        let mut full = HalfedgeData::filled(mesh.n_halfedges(), 0);
-        for (&h, &r) in self.cut.seams.iter().zip(&self.matching) {
+    /// The matchings per half-edge of the slit mesh: negated on twins, zero across the tree.
+    pub fn matching_per_halfedge(&self, sectors: &Sectors<'_>) -> HalfedgeData<i32> {
+        let mut full = HalfedgeData::filled(sectors.slit().n_halfedges(), 0);
+        for (&h, &r) in self.turning.iter().zip(&self.matching) {
             full[h] = r;
-            if let Some(t) = mesh.twin(h) {
+            if let Some(t) = sectors.slit().twin(h) {
                 full[t] = -r;
             }
         }
         full
+    }
+
+    /// Adds whole turns of edges (per half-edge, negated on twins) and returns to the gauge of the tree;
+    /// gives the quarter turns by which the faces' gauge changed.
+    pub fn turn(&mut self, sectors: &Sectors<'_>, by: &HalfedgeData<i32>) -> FaceData<i32> {
+        let mut full = self.matching_per_halfedge(sectors);
+        full.iter_mut().zip(by.iter()).for_each(|(r, by)| *r += by);
+        let (moved, gauge) = regauge(sectors.slit(), &self.tree, &full);
+        for (r, &h) in self.matching.iter_mut().zip(&self.turning) {
+            *r = moved[h];
+        }
+        gauge
     }
 }

@@ -8,6 +8,8 @@ mod progressive;
 mod relaxation;
 mod repair;
 mod surrogate;
+mod system;
+mod weights;
 
 pub use clean_up::{CleanUpError, CleanUpOptions, CleanUpStats, clean_up};
 pub use holonomy::fix_holonomy;

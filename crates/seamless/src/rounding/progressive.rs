@@ -3,12 +3,13 @@
 use super::matched::MatchedCut;
 use super::patch::LocalEstimate;
 use super::relaxation::Relaxation;
-use crate::cut::Cut;
+use super::weights::SectorWeights;
+use crate::features::Sectors;
 use crate::layout::homotopy::HomotopyError;
 use crate::layout::isometric::unfold;
 use crate::progress::Watch;
 use num_complex::Complex64;
-use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
+use seamstress_surface::{Halfedge, Metric, TriMesh, VertexData};
 
 /// How the size of a rounding is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -31,6 +32,9 @@ pub struct RoundingOptions {
     /// half, cancelling a pair of unit cones by a whole turn costs as little as not turning at all (the
     /// smaller turn wins); beyond it cones are cancelled where they belong.
     pub cone_bias: f64,
+    /// The same at corners: sectors between two aligned edges. Larger values make corners keep to the
+    /// whole number of quarters nearest to their angle, at a price in distortion.
+    pub corner_weight: f64,
     /// Rounds over which the threshold on the cost grows to its last value.
     pub rounds: usize,
     /// Layout iterations per round.
@@ -42,6 +46,7 @@ impl Default for RoundingOptions {
         Self {
             strategy: RoundingStrategy::default(),
             cone_bias: 0.5,
+            corner_weight: 0.5,
             rounds: 60,
             layout_iterations: 8,
         }
@@ -64,25 +69,28 @@ const LAST_THRESHOLD: f64 = 1.0;
 const SAME_COST: f64 = 1e-9;
 /// A new layout is worth its time once this share of the seams was rounded.
 const LAYOUT_SHARE: f64 = 0.005;
-/// Roundings that turn a seam by more than this (quarters) keep apart within a round.
+/// Roundings that turn an edge by more than this (quarters) keep apart within a round.
 const LARGE_TURN: f64 = 0.1;
 
-/// Rounds the matchings of all seams, cheapest first, laying the mesh out again after each round that
-/// changed enough.
+/// Rounds the matchings of all turning edges, cheapest first, laying the mesh out again after each round
+/// that changed enough.
 ///
-/// The cost of turning a seam of rotation r by d = i - r to the integer i, with k the real indices of
-/// its ends, is `size(d) + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves curvature from one
-/// end to the other, and the second term is the change of total absolute curvature. Returns the
-/// rotations of the faces in the last layout of the all-seam cut.
+/// The cost of turning an edge of rotation r by d = i - r to the integer i, with k the real indices of
+/// its ends less the preferred ones, is `size(d) + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves
+/// curvature from one end to the other, and the second term is the change of total absolute curvature. At
+/// corners the bias is the corner weight, and what leads out of the bounds of the index costs more still.
+/// Returns the rotations of the faces in the last layout of the all-seam cut.
 pub fn round(
-    mesh: &TriMesh,
+    sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &mut MatchedCut,
     options: &RoundingOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<Complex64>, RoundingStats), HomotopyError> {
-    let z = unfold(mesh, metric, &matched.tree, &matched.cut);
-    let mut relaxation = Relaxation::new(mesh, metric, &matched.cut, z)?;
+    let slit = sectors.slit();
+    let z = unfold(slit, metric, &matched.tree, &matched.cut);
+    let mut relaxation = Relaxation::new(sectors, metric, matched, z)?;
+    let weights = SectorWeights::new(sectors, options);
     let mut rotation = matched.isometric.clone();
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;
@@ -97,31 +105,29 @@ pub fn round(
         } else {
             f64::INFINITY
         };
-        let index = interior_indices(mesh, metric, matched, &rotation);
-        let change = |v: Vertex, d: f64| {
-            if mesh.is_boundary(v) { 0.0 } else { (index[v] + d).abs() - index[v].abs() }
-        };
-        let cost = |seam: u32, turn: f64| {
+        let index = matched.indices(sectors, metric, &rotation);
+        let cost = |edge: u32, turn: f64| {
             let size = match &estimate {
-                Some((patches, log_scale)) => patches.size(seam, turn, log_scale),
+                Some((patches, log_scale)) => patches.size(edge, turn, log_scale),
                 None => turn.abs(),
             };
-            let h = matched.cut.seams[seam as usize];
-            size + options.cone_bias * (change(mesh.origin(h), -turn) + change(mesh.tip(h), turn))
+            let h = matched.turning[edge as usize];
+            let (o, d) = (slit.origin(h), slit.tip(h));
+            size + (weights.change(o, index[o], -turn) + weights.change(d, index[d], turn))
         };
-        let chosen = choose(mesh, &matched.cut, &rotation, &open, threshold, cost);
+        let chosen = choose(slit, &matched.turning, &rotation, &open, threshold, cost);
         stats.rounds += 1;
         if chosen.is_empty() {
             continue;
         }
-        for &(seam, integer) in &chosen {
-            matched.matching[seam as usize] = integer;
-            rotation[seam as usize] = f64::from(integer);
-            relaxation.close(seam as usize, integer);
+        for &(edge, integer) in &chosen {
+            matched.matching[edge as usize] = integer;
+            rotation[edge as usize] = f64::from(integer);
+            relaxation.close(edge as usize, integer);
         }
         let mut is_chosen = vec![false; rotation.len()];
-        chosen.iter().for_each(|&(seam, _)| is_chosen[seam as usize] = true);
-        open.retain(|&seam| !is_chosen[seam as usize]);
+        chosen.iter().for_each(|&(edge, _)| is_chosen[edge as usize] = true);
+        open.retain(|&edge| !is_chosen[edge as usize]);
         since_layout += chosen.len();
         if (since_layout as f64) < LAYOUT_SHARE * total && !open.is_empty() {
             continue;
@@ -130,40 +136,26 @@ pub fn round(
         relaxation.relax(options.layout_iterations)?;
         stats.layouts += 1;
         if options.strategy == RoundingStrategy::LocalEstimation {
-            // Most seams are rounded at first sight; the patches of the others are worth solving.
+            // Most edges are rounded at first sight; the patches of the others are worth solving.
             let patches = match estimate {
                 Some((patches, _)) => patches,
-                None => LocalEstimate::new(mesh, metric, &matched.cut.seams, &open),
+                None => LocalEstimate::new(sectors, metric, &matched.turning, &open),
             };
-            estimate = Some((patches, relaxation.log_scale(mesh, metric)));
+            estimate = Some((patches, relaxation.log_scale(slit, metric)));
         }
-        for &seam in &open {
-            let r = &mut rotation[seam as usize];
-            *r = relaxation.rotation(seam as usize, *r);
+        for &edge in &open {
+            let r = &mut rotation[edge as usize];
+            *r = relaxation.rotation(edge as usize, *r);
         }
     }
     Ok((relaxation.frames(), stats))
 }
 
-/// Indices at the current rotations; zero on the boundary, where they are free.
-fn interior_indices(
-    mesh: &TriMesh,
-    metric: &Metric,
-    matched: &MatchedCut,
-    rotation: &[f64],
-) -> VertexData<f64> {
-    let mut index = matched.indices(mesh, metric, rotation);
-    for v in mesh.vertices().filter(|&v| mesh.is_boundary(v)) {
-        index[v] = 0.0;
-    }
-    index
-}
-
-/// The open seams to round now, with their integers: cost within the threshold, cheapest first, large
-/// turns at least a vertex apart.
+/// The open edges to round now, with their integers: cost within the threshold, cheapest first, large
+/// turns at least a sector apart.
 fn choose(
     mesh: &TriMesh,
-    cut: &Cut,
+    turning: &[Halfedge],
     rotation: &[f64],
     open: &[u32],
     threshold: f64,
@@ -171,13 +163,13 @@ fn choose(
 ) -> Vec<(u32, i32)> {
     let mut candidates: Vec<Candidate> = open
         .iter()
-        .filter_map(|&seam| {
-            let r = rotation[seam as usize];
-            let cost = |integer: f64| cost(seam, integer - r);
+        .filter_map(|&edge| {
+            let r = rotation[edge as usize];
+            let cost = |integer: f64| cost(edge, integer - r);
             let option = |integer: f64| Candidate {
                 cost: cost(integer),
                 turn: (integer - r).abs(),
-                seam,
+                edge,
                 integer: integer as i32,
             };
             let (low, high) = (option(r.floor()), option(r.ceil()));
@@ -191,29 +183,29 @@ fn choose(
         if candidate.turn <= LARGE_TURN {
             return true;
         }
-        let h = cut.seams[candidate.seam as usize];
+        let h = turning[candidate.edge as usize];
         let (o, d) = (mesh.origin(h), mesh.tip(h));
         let free = !used[o] && !used[d];
         used[o] |= free;
         used[d] |= free;
         free
     });
-    candidates.into_iter().map(|c| (c.seam, c.integer)).collect()
+    candidates.into_iter().map(|c| (c.edge, c.integer)).collect()
 }
 
-/// A rounding; its key orders by cost, then by how little it turns, then by seam. Costs and turns that differ by
+/// A rounding; its key orders by cost, then by how little it turns, then by id. Costs and turns that differ by
 /// rounding errors only count as equal: these must not decide.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
     cost: f64,
     turn: f64,
-    seam: u32,
+    edge: u32,
     integer: i32,
 }
 
 impl Candidate {
     fn key(&self) -> (i64, i64, u32, i32) {
         let coarse = |x: f64| (x / SAME_COST).round() as i64;
-        (coarse(self.cost), coarse(self.turn), self.seam, self.integer)
+        (coarse(self.cost), coarse(self.turn), self.edge, self.integer)
     }
 }

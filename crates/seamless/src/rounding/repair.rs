@@ -1,7 +1,8 @@
-//! Making the indices of all vertices possible for triangles.
+//! Making the indices of all sectors possible for triangles.
 
 use super::matched::MatchedCut;
-use seamstress_surface::{Metric, TriMesh, Vertex, VertexData};
+use crate::features::Sectors;
+use seamstress_surface::{Metric, Vertex, VertexData};
 use std::collections::VecDeque;
 
 /// Smallest and largest index, in quarters, that an interior vertex of this valence should get: its
@@ -12,42 +13,46 @@ pub fn index_bounds(valence: usize) -> (i32, i32) {
     (4 - most_quarters.max(1), 3)
 }
 
-/// Shifts matchings until every interior index is within its bounds; returns how many shifts it took,
-/// and the vertices that stay out of bounds.
+/// Shifts matchings until every index is within its bounds; returns how many shifts it took, and the
+/// sectors that stay out of bounds.
 ///
-/// A vertex out of bounds passes one unit along the shortest path of seams to a vertex that can take
-/// it, the boundary included.
-pub fn repair(mesh: &TriMesh, metric: &Metric, matched: &mut MatchedCut) -> (usize, Vec<Vertex>) {
-    let mut index = matched.cone_indices(mesh, metric);
-    let bounds: VertexData<(i32, i32)> =
-        mesh.vertices().map(|v| index_bounds(mesh.valence(v))).collect();
-    let excess = |index: &VertexData<i32>, v: Vertex| {
-        let (low, high) = bounds[v];
-        if mesh.is_boundary(v) { 0 } else { (index[v] - high).max(0) - (low - index[v]).max(0) }
+/// A sector out of bounds passes one unit along the shortest path of turning edges to a sector that can
+/// take it; free ones always can.
+pub fn repair(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+) -> (usize, Vec<Vertex>) {
+    let slit = sectors.slit();
+    let mut index = matched.sector_indices(sectors, metric);
+    let bounds: VertexData<(i32, i32)> = slit.vertices().map(|s| sectors.bounds(s)).collect();
+    let excess = |index: &VertexData<i32>, s: Vertex| {
+        let (low, high) = bounds[s];
+        if sectors.is_free(s) { 0 } else { (index[s] - high).max(0) - (low - index[s]).max(0) }
     };
-    let mut seams_at = VertexData::filled(mesh.n_vertices(), Vec::new());
-    for (s, &h) in matched.cut.seams.iter().enumerate() {
+    let mut turning_at = VertexData::filled(slit.n_vertices(), Vec::new());
+    for (e, &h) in matched.turning.iter().enumerate() {
         // Raising the matching moves a unit of index from the origin to the tip.
-        seams_at[mesh.origin(h)].push((s, mesh.tip(h), 1));
-        seams_at[mesh.tip(h)].push((s, mesh.origin(h), -1));
+        turning_at[slit.origin(h)].push((e, slit.tip(h), 1));
+        turning_at[slit.tip(h)].push((e, slit.origin(h), -1));
     }
     let (mut shifts, mut hopeless) = (0, Vec::new());
-    for start in mesh.vertices() {
+    for start in slit.vertices() {
         while excess(&index, start) != 0 {
             let unit = excess(&index, start).signum();
-            let takes = |v: Vertex| {
-                let after = index[v] + unit;
-                mesh.is_boundary(v) || (bounds[v].0..=bounds[v].1).contains(&after)
+            let takes = |s: Vertex| {
+                let after = index[s] + unit;
+                sectors.is_free(s) || (bounds[s].0..=bounds[s].1).contains(&after)
             };
-            let Some(path) = shortest_path(mesh, &seams_at, start, takes) else {
+            let Some(path) = shortest_path(&turning_at, start, takes) else {
                 hopeless.push(start);
                 break;
             };
-            for (s, from, to, sign) in path {
-                matched.matching[s] += sign * unit;
-                for (v, change) in [(from, -unit), (to, unit)] {
-                    if !mesh.is_boundary(v) {
-                        index[v] += change;
+            for (e, from, to, sign) in path {
+                matched.matching[e] += sign * unit;
+                for (s, change) in [(from, -unit), (to, unit)] {
+                    if !sectors.is_free(s) {
+                        index[s] += change;
                     }
                 }
                 shifts += 1;
@@ -59,14 +64,14 @@ pub fn repair(mesh: &TriMesh, metric: &Metric, matched: &mut MatchedCut) -> (usi
 
 type Step = (usize, Vertex, Vertex, i32);
 
-/// Breadth-first path over seams from a vertex to the nearest other one that satisfies a condition.
+/// Breadth-first path over turning edges from a sector to the nearest other one that satisfies a
+/// condition.
 fn shortest_path(
-    mesh: &TriMesh,
-    seams_at: &VertexData<Vec<(usize, Vertex, i32)>>,
+    turning_at: &VertexData<Vec<(usize, Vertex, i32)>>,
     start: Vertex,
     goal: impl Fn(Vertex) -> bool,
 ) -> Option<Vec<Step>> {
-    let mut from: VertexData<Option<Step>> = VertexData::filled(mesh.n_vertices(), None);
+    let mut from: VertexData<Option<Step>> = VertexData::filled(turning_at.len(), None);
     let mut queue = VecDeque::from([start]);
     while let Some(v) = queue.pop_front() {
         if v != start && goal(v) {
@@ -79,9 +84,9 @@ fn shortest_path(
             path.reverse();
             return Some(path);
         }
-        for &(s, w, sign) in &seams_at[v] {
+        for &(e, w, sign) in &turning_at[v] {
             if w != start && from[w].is_none() {
-                from[w] = Some((s, v, w, sign));
+                from[w] = Some((e, v, w, sign));
                 queue.push_back(w);
             }
         }

@@ -1,5 +1,6 @@
 //! What a set of cones costs, without laying anything out.
 
+use crate::features::Sectors;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
@@ -11,13 +12,14 @@ use std::f64::consts::FRAC_PI_2;
 /// `E(k) = 8 / A |u|^2_M` with `L u = K - k pi / 2`: -u is the logarithmic scale of the conformal map with
 /// these cones, L the cotangent Laplacian, M the vertex areas. Scaling by `e^u` costs `8 u^2` of
 /// symmetric Dirichlet energy to second order; the best isometric map costs half as much, by the theory
-/// of thin plates, which changes the price of a cone but not the order of preference. u vanishes on the
-/// boundary; on a closed surface its mean does.
+/// of thin plates, which changes the price of a cone but not the order of preference. u vanishes at free
+/// sectors; on a piece of the slit surface without any, its mean does. Pieces do not feel each other
+/// across features, which makes the estimate too low there.
 pub struct Surrogate<'a> {
-    mesh: &'a TriMesh,
+    sectors: &'a Sectors<'a>,
     area: VertexData<f64>,
     total: f64,
-    closed: bool,
+    pieces: Pieces,
     cholesky: Cholesky<f64>,
     /// Log scale of the present cones, negated.
     scale: Vec<f64>,
@@ -25,12 +27,12 @@ pub struct Surrogate<'a> {
     gradient: Vec<f64>,
 }
 
-/// What happens when one unit of index goes from one vertex to another.
+/// What happens when one unit of index goes from one sector to another.
 #[derive(Debug, Clone, Copy)]
 pub struct Response {
     /// Second-order change of the energy.
     pub quadratic: f64,
-    /// Change of the negated log scale at the first and the second vertex.
+    /// Change of the negated log scale at the first and the second sector.
     pub scale: [f64; 2],
 }
 
@@ -45,10 +47,11 @@ impl<'a> Surrogate<'a> {
     /// # Errors
     /// When the Laplacian cannot be factored.
     pub fn new(
-        mesh: &'a TriMesh,
+        sectors: &'a Sectors<'a>,
         metric: &Metric,
         index: &VertexData<i32>,
     ) -> Result<Self, NotPositiveDefinite> {
+        let mesh = sectors.slit();
         let n = mesh.n_vertices();
         let ends = |h| [mesh.origin(h).0, mesh.tip(h).0];
         let mut builder = PatternBuilder::new(n);
@@ -58,11 +61,10 @@ impl<'a> Surrogate<'a> {
         let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
         let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         let cotangent = metric.cotangent();
-        let closed = !mesh.has_boundary();
-        // Fixed vertices keep a row of their own with a large diagonal.
-        let fixed = |v: Vertex| {
-            if closed { v.0 == 0 } else { mesh.is_boundary(v) }
-        };
+        let area = metric.vertex_area(mesh);
+        let pieces = Pieces::new(sectors, &area);
+        // Fixed sectors keep a row of their own with a large diagonal.
+        let fixed = |s: Vertex| sectors.is_free(s) || pieces.pins(s);
         let mut matrix = vec![0.0; pattern.len()];
         for h in mesh.edges() {
             let weight = edge_weight(mesh, &cotangent, h);
@@ -77,10 +79,16 @@ impl<'a> Surrogate<'a> {
             }
         }
         cholesky.factorize(&pattern, &matrix)?;
-        let area = metric.vertex_area(mesh);
         let total = area.iter().sum();
-        let mut surrogate =
-            Self { mesh, area, total, closed, cholesky, scale: Vec::new(), gradient: Vec::new() };
+        let mut surrogate = Self {
+            sectors,
+            area,
+            total,
+            pieces,
+            cholesky,
+            scale: Vec::new(),
+            gradient: Vec::new(),
+        };
         let excess: Vec<f64> = metric
             .curvature(mesh)
             .enumerate()
@@ -91,47 +99,41 @@ impl<'a> Surrogate<'a> {
         Ok(surrogate)
     }
 
-    fn is_fixed(&self, v: Vertex) -> bool {
-        if self.closed { v.0 == 0 } else { self.mesh.is_boundary(v) }
-    }
-
     fn weighted(&self, u: &[f64]) -> Vec<f64> {
         u.iter().zip(self.area.iter()).map(|(u, m)| u * m).collect()
     }
 
-    /// `L^-1 b` with the boundary at zero or, on a closed surface, the mean of both sides.
+    /// `L^-1 b`, zero at free sectors; the mean of both sides is taken off where there are none.
     fn solve(&self, mut b: Vec<f64>) -> Vec<f64> {
-        self.prepare(&mut b);
+        let sums = self.pieces.sums(b.iter().copied());
+        for (s, b) in self.sectors.slit().vertices().zip(&mut b) {
+            *b -= self.pieces.mean(&sums, s) * self.area[s];
+        }
+        self.hold(&mut b);
         // The only failure is memory, which the factor needed far more of.
         let _ = self.cholesky.solve_columns(&mut b, 1);
         self.center(&mut b);
         b
     }
 
-    fn prepare(&self, b: &mut [f64]) {
-        if self.closed {
-            let mean = b.iter().sum::<f64>() / self.total;
-            b.iter_mut().zip(self.area.iter()).for_each(|(b, m)| *b -= mean * m);
-        }
-        self.hold(b);
-    }
-
     fn hold(&self, b: &mut [f64]) {
-        for v in self.mesh.vertices().filter(|&v| self.is_fixed(v)) {
-            b[v.at()] = 0.0;
+        for s in self.sectors.slit().vertices() {
+            if self.sectors.is_free(s) || self.pieces.pins(s) {
+                b[s.at()] = 0.0;
+            }
         }
     }
 
     fn center(&self, u: &mut [f64]) {
-        if self.closed {
-            let mean = u.iter().zip(self.area.iter()).map(|(u, m)| u * m).sum::<f64>() / self.total;
-            u.iter_mut().for_each(|u| *u -= mean);
+        let sums = self.pieces.sums(u.iter().zip(self.area.iter()).map(|(u, m)| u * m));
+        for (s, u) in self.sectors.slit().vertices().zip(u) {
+            *u -= self.pieces.mean(&sums, s);
         }
     }
 
     fn add_dipole(&self, from: Vertex, to: Vertex, b: &mut [f64]) {
         for (v, sign) in [(from, 1.0), (to, -1.0)] {
-            if !self.mesh.is_boundary(v) {
+            if !self.sectors.is_free(v) {
                 b[v.at()] += sign * FRAC_PI_2;
             }
         }
@@ -143,18 +145,18 @@ impl<'a> Surrogate<'a> {
         8.0 / self.total * squares.sum::<f64>()
     }
 
-    /// First-order change of the energy when one unit of index goes from one vertex to another.
+    /// First-order change of the energy when one unit of index goes from one sector to another.
     pub fn linear(&self, from: Vertex, to: Vertex) -> f64 {
         let at = |v: Vertex| {
-            if self.mesh.is_boundary(v) { 0.0 } else { self.gradient[v.at()] }
+            if self.sectors.is_free(v) { 0.0 } else { self.gradient[v.at()] }
         };
         8.0 / self.total * 2.0 * FRAC_PI_2 * (at(from) - at(to))
     }
 
-    /// Responses to a unit sent from the first to the second vertex of several pairs; they do not depend
+    /// Responses to a unit sent from the first to the second sector of several pairs; they do not depend
     /// on the present cones.
     pub fn responses(&self, pairs: &[(Vertex, Vertex)]) -> Vec<Response> {
-        let n = self.mesh.n_vertices();
+        let n = self.sectors.slit().n_vertices();
         pairs
             .par_chunks(BATCH)
             .flat_map_iter(|chunk| {
@@ -183,19 +185,70 @@ impl<'a> Surrogate<'a> {
             .collect()
     }
 
-    /// Log scale at a vertex, negated.
+    /// Log scale at a sector, negated.
     pub fn scale(&self, v: Vertex) -> f64 {
         self.scale[v.at()]
     }
 
-    /// Moves one unit of index from one vertex to another.
+    /// Moves one unit of index from one sector to another.
     pub fn transport(&mut self, from: Vertex, to: Vertex) {
-        let mut curvature = vec![0.0; self.mesh.n_vertices()];
+        let mut curvature = vec![0.0; self.sectors.slit().n_vertices()];
         self.add_dipole(from, to, &mut curvature);
         let change = self.solve(curvature);
         self.scale.iter_mut().zip(&change).for_each(|(u, d)| *u += d);
         let second = self.solve(self.weighted(&change));
         self.gradient.iter_mut().zip(&second).for_each(|(g, d)| *g += d);
+    }
+}
+
+/// The connected pieces of the slit surface. Those without a free sector float: their log scale is known
+/// up to a constant.
+struct Pieces {
+    of_sector: VertexData<u32>,
+    /// First sector and area of each piece that floats.
+    floating: Vec<Option<(Vertex, f64)>>,
+}
+
+impl Pieces {
+    fn new(sectors: &Sectors<'_>, area: &VertexData<f64>) -> Self {
+        let slit = sectors.slit();
+        let (of_face, count) = slit.connected_faces();
+        let mut of_sector = VertexData::filled(slit.n_vertices(), 0);
+        for h in slit.halfedges() {
+            of_sector[slit.origin(h)] = of_face[h.face()];
+        }
+        let mut floating = vec![Some((None, 0.0)); count];
+        for s in slit.vertices() {
+            let piece = &mut floating[of_sector[s] as usize];
+            *piece = match *piece {
+                Some((first, sum)) if !sectors.is_free(s) => {
+                    Some((first.or(Some(s)), sum + area[s]))
+                }
+                _ => None,
+            };
+        }
+        let floating = floating.into_iter().map(|piece| Some((piece?.0?, piece?.1))).collect();
+        Self { of_sector, floating }
+    }
+
+    /// Whether a sector is the one that holds its floating piece.
+    fn pins(&self, s: Vertex) -> bool {
+        self.floating[self.of_sector[s] as usize].is_some_and(|(first, _)| first == s)
+    }
+
+    /// Sum of a value per sector over each piece.
+    fn sums(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut sums = vec![0.0; self.floating.len()];
+        for (value, piece) in values.zip(self.of_sector.iter()) {
+            sums[*piece as usize] += value;
+        }
+        sums
+    }
+
+    /// Sum over the area for the piece of a sector, zero if it does not float.
+    fn mean(&self, sums: &[f64], s: Vertex) -> f64 {
+        let piece = self.of_sector[s] as usize;
+        self.floating[piece].map_or(0.0, |(_, area)| sums[piece] / area)
     }
 }
 

@@ -1,0 +1,247 @@
+//! The subspace of a linear space in which given edges lie along the axes.
+
+use super::space::LinearSpace;
+use std::collections::BTreeMap;
+
+/// An edge both ends of which have the same coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Level {
+    /// Wedges of its ends.
+    pub ends: [u32; 2],
+    /// The coordinate they share: 0 for u, 1 for v.
+    pub coordinate: u32,
+}
+
+/// Linear form in the unknowns.
+type Form = BTreeMap<u32, f64>;
+
+/// Coefficients below this are rounding errors of zero: the exact ones are sums of dyadic fractions.
+const ZERO: f64 = 1e-11;
+
+/// The part of a space in which all given edges are level.
+///
+/// Most conditions say that two unknowns are equal up to sign: a signed union-find settles them, so that
+/// the wedges along an isoline share one number. Conditions across chains and at nodes have more terms and
+/// are eliminated one by one.
+pub fn leveled(space: &LinearSpace, levels: &[Level]) -> LinearSpace {
+    let mut equalities = Equalities::new(space.n_unknowns());
+    let mut conditions: Vec<Form> = levels.iter().map(|level| condition(space, level)).collect();
+    loop {
+        let before = conditions.len();
+        conditions.retain_mut(|form| {
+            *form = equalities.reduce(form);
+            !equalities.absorb(form)
+        });
+        if conditions.len() == before {
+            break;
+        }
+    }
+    let solved = eliminate(conditions);
+    let row = |row: usize| {
+        let mut form = equalities.reduce(&form_of(space, row));
+        substitute(&mut form, &solved);
+        form
+    };
+    let rows: Vec<Form> = (0..2 * space.n_wedges()).map(row).collect();
+    renumber(space, &rows)
+}
+
+/// The form that vanishes for a level edge.
+fn condition(space: &LinearSpace, level: &Level) -> Form {
+    let [a, b] = level.ends.map(|w| form_of(space, (2 * w + level.coordinate) as usize));
+    let mut form = b;
+    add_scaled(&mut form, &a, -1.0);
+    form
+}
+
+fn form_of(space: &LinearSpace, row: usize) -> Form {
+    let (columns, coefficients) = space.row(row);
+    columns.iter().copied().zip(coefficients.iter().copied()).collect()
+}
+
+fn add_term(form: &mut Form, unknown: u32, c: f64) {
+    let sum = form.entry(unknown).or_default();
+    *sum += c;
+    if sum.abs() < ZERO {
+        form.remove(&unknown);
+    }
+}
+
+fn add_scaled(form: &mut Form, other: &Form, factor: f64) {
+    for (&unknown, &c) in other {
+        add_term(form, unknown, factor * c);
+    }
+}
+
+/// Unknowns known to be equal up to sign, or zero.
+struct Equalities {
+    /// Another unknown it equals up to sign, or itself; and the sign.
+    parent: Vec<(u32, f64)>,
+    is_zero: Vec<bool>,
+}
+
+impl Equalities {
+    fn new(n: usize) -> Self {
+        Self { parent: (0..n as u32).map(|x| (x, 1.0)).collect(), is_zero: vec![false; n] }
+    }
+
+    /// Representative of an unknown, and the sign between them.
+    fn find(&mut self, mut x: u32) -> (u32, f64) {
+        let mut sign = 1.0;
+        loop {
+            let (up, s) = self.parent[x as usize];
+            if up == x {
+                return (x, sign);
+            }
+            // Halve the path.
+            let (above, t) = self.parent[up as usize];
+            self.parent[x as usize] = (above, s * t);
+            (x, sign) = (above, sign * s * t);
+        }
+    }
+
+    /// A form in representatives that are not zero.
+    fn reduce(&mut self, form: &Form) -> Form {
+        let mut reduced = Form::new();
+        for (&x, &c) in form {
+            let (root, sign) = self.find(x);
+            if !self.is_zero[root as usize] {
+                add_term(&mut reduced, root, sign * c);
+            }
+        }
+        reduced
+    }
+
+    /// Takes a condition in if it says no more than that two unknowns are equal up to sign or one is zero;
+    /// whether it did.
+    fn absorb(&mut self, reduced: &Form) -> bool {
+        let terms: Vec<_> = reduced.iter().map(|(&x, &c)| (x, c)).collect();
+        match terms[..] {
+            [] => true,
+            [(x, _)] => {
+                self.is_zero[x as usize] = true;
+                true
+            }
+            [(x, c), (y, d)] if (c.abs() - d.abs()).abs() < ZERO => {
+                // c x + d y = 0; the larger id hangs on the smaller.
+                self.parent[y as usize] = (x, -(c * d).signum());
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Solves conditions for one unknown each; the solutions hold none of these.
+fn eliminate(mut conditions: Vec<Form>) -> BTreeMap<u32, Form> {
+    let mut uses: BTreeMap<u32, usize> = BTreeMap::new();
+    for &unknown in conditions.iter().flat_map(|form| form.keys()) {
+        *uses.entry(unknown).or_default() += 1;
+    }
+    conditions.sort_by_key(BTreeMap::len);
+    let mut solved: BTreeMap<u32, Form> = BTreeMap::new();
+    let mut sequence = Vec::new();
+    for mut form in conditions {
+        substitute(&mut form, &solved);
+        // Large coefficients first, which keeps them exact; then the unknown the fewest conditions use.
+        let size = |c: f64| (c.abs() * 16.0).round() as i64;
+        let rank = |(x, c): (&u32, &f64)| (-size(*c), uses.get(x).copied(), *x);
+        let Some(pivot) = form.iter().map(rank).min().map(|(_, _, x)| x) else { continue };
+        let Some(c) = form.remove(&pivot) else { continue };
+        let mut value = Form::new();
+        add_scaled(&mut value, &form, -1.0 / c);
+        solved.insert(pivot, value);
+        sequence.push(pivot);
+    }
+    // Later solutions hold no earlier pivot, so resolving backwards takes one pass.
+    for &pivot in sequence.iter().rev() {
+        if let Some(mut value) = solved.remove(&pivot) {
+            substitute(&mut value, &solved);
+            solved.insert(pivot, value);
+        }
+    }
+    solved
+}
+
+/// Replaces solved unknowns until none is left.
+fn substitute(form: &mut Form, solved: &BTreeMap<u32, Form>) {
+    if solved.is_empty() {
+        return;
+    }
+    while let Some(unknown) = form.keys().copied().find(|x| solved.contains_key(x)) {
+        if let Some(c) = form.remove(&unknown) {
+            add_scaled(form, &solved[&unknown], c);
+        }
+    }
+}
+
+/// Numbers the unknowns that are left, in order, and their nodes.
+fn renumber(space: &LinearSpace, rows: &[Form]) -> LinearSpace {
+    let mut number = vec![u32::MAX; space.n_unknowns()];
+    rows.iter().flat_map(Form::keys).for_each(|&x| number[x as usize] = 0);
+    let mut nodes: Vec<u32> = Vec::new();
+    let mut last = None;
+    for (x, id) in number.iter_mut().enumerate().filter(|(_, id)| **id == 0) {
+        *id = nodes.len() as u32;
+        let node = space.nodes()[x];
+        let here = nodes.last().map_or(0, |&n| if last == Some(node) { n } else { n + 1 });
+        nodes.push(here);
+        last = Some(node);
+    }
+    let renamed = |row: &Form| row.iter().map(|(&x, &c)| (number[x as usize], c)).collect();
+    LinearSpace::from_rows(nodes, rows.iter().map(renamed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn level(a: u32, b: u32, coordinate: u32) -> Level {
+        Level { ends: [a, b], coordinate }
+    }
+
+    #[test]
+    fn wedges_along_an_isoline_share_one_number() {
+        let space =
+            leveled(&LinearSpace::free(4), &[level(0, 1, 1), level(1, 2, 1), level(2, 3, 0)]);
+        assert_eq!(space.n_unknowns(), 5);
+        assert_eq!(space.nodes(), [0, 0, 1, 2, 3]);
+        let z = space.expand(&[0.1, 0.2, 0.3, 0.4, 0.5]);
+        assert_eq!((z[0].im, z[1].im, z[2].im), (0.2, 0.2, 0.2));
+        assert_eq!((z[2].re, z[3].re), (0.4, 0.4));
+        assert_eq!((z[0].re, z[1].re, z[3].im), (0.1, 0.3, 0.5));
+    }
+
+    #[test]
+    fn longer_conditions_are_eliminated_exactly() {
+        // Three wedges of which the second is half the first plus the third, the last zero.
+        let rows = [
+            vec![(0, 1.0)],
+            vec![(1, 1.0)],
+            vec![(0, 0.5), (2, 1.0)],
+            vec![(3, -1.0)],
+            vec![],
+            vec![(2, 1.0), (3, 1.0)],
+        ];
+        let nodes = vec![0, 0, 1, 1];
+        let space = LinearSpace::from_rows(nodes, rows.into_iter());
+        let conditions = [level(0, 1, 0), level(1, 2, 1), level(1, 0, 1)];
+        let leveled = leveled(&space, &conditions);
+        // u0 = u0 / 2 + x2, -x3 = x2 + x3, -x3 = x1
+        let y: Vec<f64> = (0..leveled.n_unknowns()).map(|k| 1.0 + k as f64).collect();
+        let z = leveled.expand(&y);
+        assert_eq!(leveled.n_unknowns(), 1);
+        assert_eq!(z[0].re, z[1].re);
+        assert_eq!((z[1].im, z[0].im), (z[2].im, z[1].im));
+        assert!(z.iter().any(|z| z.norm() > 0.1));
+    }
+
+    #[test]
+    fn contradictions_leave_zero() {
+        // u0 = u1 and u0 = -u1
+        let rows = [vec![(0, 1.0)], vec![], vec![(1, 1.0)], vec![], vec![(1, -1.0)], vec![]];
+        let space = LinearSpace::from_rows(vec![0, 1], rows.into_iter());
+        let leveled = leveled(&space, &[level(0, 1, 0), level(0, 2, 0)]);
+        assert_eq!(leveled.n_unknowns(), 0);
+    }
+}
