@@ -36,7 +36,7 @@ pub fn leveled(space: &LinearSpace, levels: &[Level]) -> LinearSpace {
             break;
         }
     }
-    let solved = eliminate(conditions);
+    let solved = eliminate(conditions, uses(space, &mut equalities));
     let row = |row: usize| {
         let mut form = equalities.reduce(&form_of(space, row));
         substitute(&mut form, &solved);
@@ -132,35 +132,55 @@ impl Equalities {
     }
 }
 
-/// Solves conditions for one unknown each; the solutions hold none of these.
-fn eliminate(mut conditions: Vec<Form>) -> BTreeMap<u32, Form> {
-    let mut uses: BTreeMap<u32, usize> = BTreeMap::new();
-    for &unknown in conditions.iter().flat_map(|form| form.keys()) {
-        *uses.entry(unknown).or_default() += 1;
+/// How many coordinates depend on each representative.
+fn uses(space: &LinearSpace, equalities: &mut Equalities) -> Vec<u32> {
+    let mut uses = vec![0; space.n_unknowns()];
+    for row in 0..2 * space.n_wedges() {
+        for &x in space.row(row).0 {
+            uses[equalities.find(x).0 as usize] += 1;
+        }
     }
-    conditions.sort_by_key(BTreeMap::len);
-    let mut solved: BTreeMap<u32, Form> = BTreeMap::new();
-    let mut sequence = Vec::new();
-    for mut form in conditions {
-        substitute(&mut form, &solved);
-        // Large coefficients first, which keeps them exact; then the unknown the fewest conditions use.
-        let size = |c: f64| (c.abs() * 16.0).round() as i64;
-        let rank = |(x, c): (&u32, &f64)| (-size(*c), uses.get(x).copied(), *x);
-        let Some(pivot) = form.iter().map(rank).min().map(|(_, _, x)| x) else { continue };
+    uses
+}
+
+/// Solves conditions for one unknown each; the solutions hold none of these.
+///
+/// Each step takes the condition and the unknown that add the fewest terms to the coordinates (Markowitz),
+/// among the unknowns with the largest coefficient, which keeps the coefficients exact.
+fn eliminate(mut open: Vec<Form>, mut uses: Vec<u32>) -> BTreeMap<u32, Form> {
+    let mut solved: Vec<(u32, Form)> = Vec::new();
+    let price = |form: &Form, uses: &[u32]| {
+        let largest = form.values().fold(0.0f64, |m, c| m.max(c.abs()));
+        let large = form.iter().filter(|(_, c)| c.abs() > largest - ZERO);
+        let (used, pivot) = large.map(|(&x, _)| (uses[x as usize], x)).min()?;
+        Some((used as usize * (form.len() - 1), pivot))
+    };
+    while let Some((k, pivot)) = open
+        .iter()
+        .enumerate()
+        .filter_map(|(k, form)| price(form, &uses).map(|(price, pivot)| (price, k, pivot)))
+        .min()
+        .map(|(_, k, pivot)| (k, pivot))
+    {
+        let mut form = open.swap_remove(k);
         let Some(c) = form.remove(&pivot) else { continue };
         let mut value = Form::new();
         add_scaled(&mut value, &form, -1.0 / c);
-        solved.insert(pivot, value);
-        sequence.push(pivot);
+        for other in &mut open {
+            if let Some(c) = other.remove(&pivot) {
+                add_scaled(other, &value, c);
+            }
+        }
+        value.keys().for_each(|&x| uses[x as usize] += uses[pivot as usize]);
+        solved.push((pivot, value));
     }
     // Later solutions hold no earlier pivot, so resolving backwards takes one pass.
-    for &pivot in sequence.iter().rev() {
-        if let Some(mut value) = solved.remove(&pivot) {
-            substitute(&mut value, &solved);
-            solved.insert(pivot, value);
-        }
+    let mut resolved = BTreeMap::new();
+    for (pivot, mut value) in solved.into_iter().rev() {
+        substitute(&mut value, &resolved);
+        resolved.insert(pivot, value);
     }
-    solved
+    resolved
 }
 
 /// Replaces solved unknowns until none is left.

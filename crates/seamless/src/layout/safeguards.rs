@@ -132,6 +132,30 @@ pub fn lay_out(
     start: Option<&[Complex64]>,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Laid, LayoutError> {
+    lay_out_with(sectors, metric, matched, start, Effort::Thorough, watch)
+}
+
+/// How much to try.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Every route.
+    Thorough,
+    /// Nothing beyond the barrier homotopy: for matchings that may as well be given up.
+    Brief,
+}
+
+/// [`lay_out`] with a limited effort.
+///
+/// # Errors
+/// As [`lay_out`].
+pub fn lay_out_with(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    matched: MatchedCut,
+    start: Option<&[Complex64]>,
+    effort: Effort,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Laid, LayoutError> {
     let mut layout = ExactLayout::new(sectors, metric, &matched)?;
     let mesh = sectors.mesh();
     if matched.cut.seams.is_empty() && !sectors.any_aligned() {
@@ -154,14 +178,14 @@ pub fn lay_out(
             }
         }
     }
-    let mut tried = Homotopies { steps: 0, last: Defects::default() };
+    let mut tried = Homotopies { effort, steps: 0, last: Defects::default() };
     let plain = tried.run(sectors, metric, matched, watch)?;
     let matched = match plain {
         Attempt::Laid(laid) => return Ok(*laid),
         Attempt::Failed(matched) => matched,
     };
-    if sectors.any_aligned() {
-        // Releasing an edge is the better way out.
+    if sectors.any_aligned() || effort == Effort::Brief {
+        // With aligned edges, releasing one is the better way out.
         return Err(LayoutError::Defective(tried.last));
     }
     for exponent in SNOWFLAKES {
@@ -220,6 +244,7 @@ fn untangle(
 
 /// What the homotopies have cost and left so far.
 struct Homotopies {
+    effort: Effort,
     steps: usize,
     last: Defects,
 }
@@ -245,6 +270,9 @@ impl Homotopies {
             Attempt::Failed(matched) => matched,
             laid => return Ok(laid),
         };
+        if self.effort == Effort::Brief {
+            return Ok(Attempt::Failed(matched));
+        }
         let closed = homotopy::continuation(sectors, metric, &matched, &settings, watch)?;
         let matched = match self.accept(sectors, metric, matched, closed, Route::Continuation)? {
             Attempt::Failed(matched) => matched,

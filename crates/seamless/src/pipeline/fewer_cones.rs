@@ -2,7 +2,7 @@
 
 use super::finish::Finished;
 use crate::features::Sectors;
-use crate::layout::safeguards::{LayoutError, lay_out};
+use crate::layout::safeguards::{Effort, LayoutError, lay_out_with};
 use crate::progress::Watch;
 use crate::quarter::turn;
 use crate::rounding::{CleanUpError, CleanUpOptions, clean_up, fix_holonomy};
@@ -22,6 +22,8 @@ pub(super) fn fewer_cones(
     price: f64,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Finished, usize), LayoutError> {
+    // The surrogate is less reliable between features, so many of its proposals fail there.
+    let effort = if sectors.any_aligned() { Effort::Brief } else { Effort::Thorough };
     let mut iterations = 0;
     for largest_scale in SCALE_BOUNDS {
         let mut cleaned = before.laid.matched.clone();
@@ -38,7 +40,7 @@ pub(super) fn fewer_cones(
         let frames = before.laid.layout.frames(&before.laid.y);
         let frames: Vec<_> =
             frames.into_iter().zip(gauge.iter()).map(|(r, &k)| turn(r, k)).collect();
-        let after = match lay_out(sectors, metric, cleaned, Some(&frames), watch) {
+        let after = match lay_out_with(sectors, metric, cleaned, Some(&frames), effort, watch) {
             Ok(laid) => Finished::new(laid, watch)?,
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(_) => continue,
