@@ -1,0 +1,278 @@
+//! Feature edges and boundaries along the axes: what is aligned is, and what is not is named.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
+
+mod common;
+
+use common::{mesh_of, surface, unwatched};
+use seamstress::rounding::{MatchedCut, RoundingOptions, repair, round};
+use seamstress::{
+    FeatureEdges, MapError, MapOptions, MapSolution, ReleaseReason, Sectors, make_aligned_map,
+};
+use seamstress_surface::soup::TriangleSoup;
+use seamstress_surface::{Halfedge, TriMesh, Vertex};
+use seamstress_testkit as kit;
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+/// Pairs of the edges between faces that are not coplanar.
+fn creases(soup: &TriangleSoup) -> Vec<[u32; 2]> {
+    let mesh = mesh_of(soup);
+    let normal = |h: Halfedge| {
+        let [a, b, c] = mesh.face_vertices(h.face()).map(|v| soup.positions[v.at()]);
+        let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+        let n = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        n.map(|x| x / length)
+    };
+    let is_crease = |h: &Halfedge| {
+        let (m, n) = (normal(*h), normal(mesh.twin(*h).unwrap()));
+        m.iter().zip(n).map(|(x, y)| x * y).sum::<f64>() < 0.5
+    };
+    let pair = |h: Halfedge| [mesh.origin(h).0, mesh.tip(h).0];
+    mesh.interior_edges().filter(is_crease).map(pair).collect()
+}
+
+/// A shortest path of edges between two vertices.
+fn path(mesh: &TriMesh, from: u32, to: u32) -> Vec<[u32; 2]> {
+    let mut previous = vec![None; mesh.n_vertices()];
+    let mut queue = VecDeque::from([from]);
+    while let Some(v) = queue.pop_front() {
+        for w in mesh.outgoing(Vertex(v)).map(|h| mesh.tip(h).0) {
+            if w != from && previous[w as usize].is_none() {
+                previous[w as usize] = Some(v);
+                queue.push_back(w);
+            }
+        }
+    }
+    let mut edges = Vec::new();
+    let mut at = to;
+    while at != from {
+        let before = previous[at as usize].unwrap();
+        edges.push([before, at]);
+        at = before;
+    }
+    edges
+}
+
+/// Edges between the faces of a set and the others.
+fn rim(mesh: &TriMesh, inside: impl Fn(usize) -> bool) -> Vec<[u32; 2]> {
+    let splits = |h: &Halfedge| {
+        let t = mesh.twin(*h).unwrap();
+        inside(h.face().at()) != inside(t.face().at())
+    };
+    let pair = |h: Halfedge| [mesh.origin(h).0, mesh.tip(h).0];
+    mesh.interior_edges().filter(splits).map(pair).collect()
+}
+
+/// The largest deviation of the given edges from an axis, degrees, and of the angles between them from
+/// multiples of a right one. Works on the numbers of the map alone.
+fn misalignment(mesh: &TriMesh, corner_uvs: &[[f64; 2]], edges: &FeatureEdges) -> [f64; 2] {
+    let side = |h: Halfedge| {
+        let (a, b) = (corner_uvs[h.at()], corner_uvs[h.next().at()]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let off_axis = |h: Halfedge| {
+        let [x, y] = side(h).map(f64::abs);
+        x.min(y).atan2(x.max(y)).to_degrees()
+    };
+    let aligned = mesh.halfedges().filter(|&h| edges.contains(h));
+    let axis = aligned.map(off_axis).fold(0.0, f64::max);
+    let corner = |h: Halfedge| {
+        let ([a, b], [c, d]) = (side(h), side(h.prev()));
+        (a * -d - b * -c).atan2(a * -c + b * -d).to_degrees()
+    };
+    let mut angle = 0.0f64;
+    for v in mesh.vertices() {
+        let fan: Vec<Halfedge> = mesh.outgoing(v).collect();
+        let Some(first) = fan.iter().position(|&h| edges.contains(h)) else { continue };
+        let (mut sum, mut closed) = (0.0, !mesh.is_boundary(v) || first == 0);
+        for k in 0..fan.len() {
+            let h = fan[(first + k) % fan.len()];
+            if mesh.is_boundary(v) && first + k >= fan.len() {
+                closed = false;
+            }
+            sum += corner(h);
+            if edges.contains(h.prev()) && closed {
+                let off = (sum / 90.0 - (sum / 90.0).round()).abs() * 90.0;
+                angle = angle.max(if sum > 45.0 { off } else { 90.0 });
+                sum = 0.0;
+            }
+        }
+    }
+    [axis, angle]
+}
+
+fn aligned_with(
+    soup: &TriangleSoup,
+    features: &FeatureEdges,
+    options: &MapOptions,
+) -> Result<MapSolution, MapError> {
+    let mut go_on = |_| ControlFlow::Continue(());
+    make_aligned_map(&mesh_of(soup), &soup.positions, features, options, &mut go_on)
+}
+
+/// The map with features aligned, checked in every way; nothing but the kept features may be missing.
+#[track_caller]
+fn aligned(soup: &TriangleSoup, features: &FeatureEdges) -> MapSolution {
+    let solution = aligned_with(soup, features, &MapOptions::default()).unwrap();
+    common::assert_seamless(soup, &solution);
+    let mesh = mesh_of(soup);
+    let [axis, angle] = misalignment(&mesh, solution.map.corner_uvs(), &solution.features);
+    assert!(axis < 1e-9, "{axis} degrees off the axes");
+    assert!(angle < 1e-6, "a sector {angle} degrees off");
+    let mut named = solution.features.clone();
+    for released in &solution.released {
+        let one = FeatureEdges::from_pairs(&mesh, &[released.vertices], false).unwrap();
+        let h = one.edges(&mesh).next().unwrap();
+        assert!(!solution.features.contains(h), "an edge both kept and released");
+        named.set(&mesh, h, true);
+    }
+    assert_eq!(&named, features, "every feature is either kept or released");
+    solution
+}
+
+fn of_pairs(soup: &TriangleSoup, pairs: &[[u32; 2]], boundary: bool) -> FeatureEdges {
+    FeatureEdges::from_pairs(&mesh_of(soup), pairs, boundary).unwrap()
+}
+
+#[test]
+fn the_checker_sees_what_is_not_aligned() {
+    let soup = kit::disk_grid(4, 4);
+    let features = of_pairs(&soup, &[], true);
+    let solution = aligned(&soup, &features);
+    let mesh = mesh_of(&soup);
+    let turned: Vec<[f64; 2]> = solution
+        .map
+        .corner_uvs()
+        .iter()
+        .map(|[u, v]| [u - 0.01 * v, v + 0.01 * u])
+        .collect();
+    assert!(misalignment(&mesh, &turned, &features)[0] > 0.5);
+    let sheared: Vec<[f64; 2]> = turned.iter().map(|[u, v]| [u + 0.3 * v, *v]).collect();
+    assert!(misalignment(&mesh, &sheared, &features)[1] > 0.5);
+}
+
+#[test]
+fn boxes_map_isometrically_with_the_expected_cones() {
+    let frame: Vec<[i32; 3]> =
+        (0..9).filter(|k| *k != 4).map(|k| [k / 3, k % 3, 0]).collect();
+    let three_way =
+        [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [0, 2, 0], [0, 0, 1], [0, 0, 2]];
+    let shapes: [(&[[i32; 3]], usize); 4] = [
+        (&[[0, 0, 0]], 8),
+        (&[[0, 0, 0], [1, 0, 0], [0, 1, 0]], 12),
+        (&frame, 16),
+        (&three_way, 17),
+    ];
+    for (cells, cones) in shapes {
+        let soup = kit::subdivide(&kit::subdivide(&kit::voxel_surface(cells)));
+        let solution = aligned(&soup, &of_pairs(&soup, &creases(&soup), false));
+        assert_eq!(solution.map.cones().len(), cones);
+        assert!(solution.released.is_empty());
+        assert!(solution.distortion.tau < 1.0 + 1e-9, "tau {}", solution.distortion.tau);
+    }
+}
+
+#[test]
+fn boundaries_of_disks_and_annuli_run_along_the_axes() {
+    for soup in [kit::disk_grid(6, 5), kit::annulus(12, 4), kit::cylinder(10, 4)] {
+        let solution = aligned(&soup, &of_pairs(&soup, &[], true));
+        assert!(solution.features.edges(&mesh_of(&soup)).count() > 0);
+    }
+    // A rectangle is one already.
+    let soup = kit::disk_grid(6, 5);
+    let solution = aligned(&soup, &of_pairs(&soup, &[], true));
+    assert!(solution.released.is_empty() && solution.map.cones().is_empty());
+    assert!(solution.distortion.tau < 1.0 + 1e-9);
+}
+
+#[test]
+fn open_curves_loops_and_crossings_on_smooth_surfaces() {
+    let sphere = kit::bumpy(&kit::icosphere(3), 0.05, 2);
+    let mesh = mesh_of(&sphere);
+    let far = mesh.n_vertices() as u32 - 1;
+    let curve = path(&mesh, 0, far);
+    let crossing = [path(&mesh, 0, 5), path(&mesh, 3, 8), path(&mesh, 0, 8)].concat();
+    let loop_around = rim(&mesh, |f| {
+        let corners = sphere.faces[f].map(|v| sphere.positions[v as usize][2]);
+        corners.iter().sum::<f64>() > 0.6
+    });
+    for pairs in [&curve[..6], &crossing, &loop_around] {
+        let features = of_pairs(&sphere, pairs, false);
+        let solution = aligned(&sphere, &features);
+        let kept = solution.features.edges(&mesh).count();
+        assert!(2 * kept > pairs.len(), "{kept} of {} kept", pairs.len());
+    }
+    let torus = kit::bumpy(&kit::torus(16, 10, 2.0, 0.8), 0.05, 1);
+    let around = rim(&mesh_of(&torus), |f| torus.faces[f].iter().all(|&v| v % 10 < 5));
+    aligned(&torus, &of_pairs(&torus, &around, false));
+}
+
+#[test]
+fn an_open_end_may_be_one_edge() {
+    let soup = kit::icosphere(2);
+    let mesh = mesh_of(&soup);
+    let h = mesh.edges().nth(77).unwrap();
+    let solution = aligned(&soup, &of_pairs(&soup, &[[mesh.origin(h).0, mesh.tip(h).0]], false));
+    assert!(solution.released.is_empty());
+}
+
+#[test]
+fn features_that_contradict_each_other_are_named() {
+    let soup = kit::icosphere(1);
+    let mesh = mesh_of(&soup);
+    let all: Vec<[u32; 2]> = mesh.edges().map(|h| [mesh.origin(h).0, mesh.tip(h).0]).collect();
+    let features = of_pairs(&soup, &all, false);
+    let solution = aligned(&soup, &features);
+    assert!(solution.released.iter().any(|r| r.reason == ReleaseReason::ThreeInTriangle));
+    let strict = MapOptions { strict_features: true, ..MapOptions::default() };
+    match aligned_with(&soup, &features, &strict) {
+        Err(MapError::Released { released }) => assert_eq!(released, solution.released),
+        other => panic!("expected released features, got {other:?}"),
+    }
+}
+
+#[test]
+fn the_same_bytes_on_one_and_two_threads() {
+    let soup = kit::bumpy(&kit::subdivide(&kit::subdivide(&kit::l_bracket())), 0.02, 4);
+    let features = of_pairs(&soup, &creases(&soup), false);
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| aligned_with(&soup, &features, &MapOptions::default()).unwrap())
+    };
+    let (one, two) = (run(1), run(2));
+    assert_eq!(one.map.corner_uvs(), two.map.corner_uvs());
+    assert_eq!((one.features, one.released), (two.features, two.released));
+}
+
+#[test]
+fn indices_of_sectors_are_integers_with_the_right_sum() {
+    for seed in 0..6 {
+        let soup = kit::random_surface(seed);
+        let (mesh, metric) = surface(&soup);
+        let mut rng = kit::Rng::new(seed);
+        let pairs: Vec<[u32; 2]> = mesh
+            .edges()
+            .filter(|_| rng.unit() < 0.05)
+            .map(|h| [mesh.origin(h).0, mesh.tip(h).0])
+            .collect();
+        let features = of_pairs(&soup, &pairs, true);
+        let sectors = Sectors::new(&mesh, &metric, &features);
+        let mut matched = MatchedCut::through_curved_sectors(&sectors, &metric);
+        let options = RoundingOptions::default();
+        unwatched(|watch| round(&sectors, &metric, &mut matched, &options, watch)).unwrap();
+        repair(&sectors, &metric, &mut matched);
+        let r: Vec<f64> = matched.matching.iter().map(|&r| f64::from(r)).collect();
+        let index = matched.indices(&sectors, &metric, &r);
+        let off = index.iter().map(|k| (k - k.round()).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-9, "an index {off} off an integer");
+        let sum: f64 = index.iter().sum();
+        let chi = sectors.slit().euler_characteristic() as f64;
+        assert!((sum - 4.0 * chi).abs() < 1e-6, "sum {sum} at characteristic {chi}");
+        // Around an interior vertex the sectors make up the whole: an integer of the mesh itself.
+        let full = sectors.glue(&matched.matching_per_halfedge(&sectors));
+        for h in mesh.halfedges() {
+            assert_eq!(full[h], mesh.twin(h).map_or(0, |t| -full[t]));
+        }
+    }
+}
