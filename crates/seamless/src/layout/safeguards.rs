@@ -182,7 +182,7 @@ pub fn lay_out_with(
     let plain = tried.run(sectors, metric, matched, watch)?;
     let matched = match plain {
         Attempt::Laid(laid) => return Ok(*laid),
-        Attempt::Failed(matched) => matched,
+        Attempt::Failed(matched) => *matched,
     };
     if sectors.any_aligned() || effort == Effort::Brief {
         // With aligned edges, releasing one is the better way out.
@@ -252,7 +252,7 @@ struct Homotopies {
 enum Attempt {
     Laid(Box<Laid>),
     /// Gives the matchings back.
-    Failed(MatchedCut),
+    Failed(Box<MatchedCut>),
 }
 
 impl Homotopies {
@@ -267,21 +267,21 @@ impl Homotopies {
         let settings = Continuation::default();
         let closed = homotopy::barrier(sectors, metric, &matched, watch)?;
         let matched = match self.accept(sectors, metric, matched, closed, Route::Barrier)? {
-            Attempt::Failed(matched) => matched,
+            Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
         if self.effort == Effort::Brief {
-            return Ok(Attempt::Failed(matched));
+            return Ok(Attempt::Failed(Box::new(matched)));
         }
         let closed = homotopy::continuation(sectors, metric, &matched, &settings, watch)?;
         let matched = match self.accept(sectors, metric, matched, closed, Route::Continuation)? {
-            Attempt::Failed(matched) => matched,
+            Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
         let other = retree(sectors, metric, &matched);
         let closed = homotopy::continuation(sectors, metric, &other, &settings, watch)?;
         Ok(match self.accept(sectors, metric, other, closed, Route::Retreed)? {
-            Attempt::Failed(_) => Attempt::Failed(matched),
+            Attempt::Failed(_) => Attempt::Failed(Box::new(matched)),
             laid => laid,
         })
     }
@@ -305,7 +305,7 @@ impl Homotopies {
             return Ok(Attempt::Laid(Box::new(laid)));
         }
         self.last = defects;
-        Ok(Attempt::Failed(matched))
+        Ok(Attempt::Failed(Box::new(matched)))
     }
 }
 
