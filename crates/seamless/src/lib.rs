@@ -7,8 +7,8 @@
 //! A [`field`] can take the place of the first two. [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
 
 pub mod cut;
-pub mod field;
 pub mod features;
+pub mod field;
 pub mod layout;
 pub mod map;
 mod pipeline;
@@ -17,7 +17,7 @@ pub mod quality;
 pub mod quarter;
 pub mod rounding;
 
-pub use features::{FeatureEdges, FeatureError, ReleaseReason, ReleasedFeature, Sectors};
+pub use features::{ReleaseReason, ReleasedFeature, Sectors};
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,

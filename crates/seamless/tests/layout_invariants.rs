@@ -337,7 +337,7 @@ fn a_map_is_its_own_exact_layout() {
         let solution =
             make_map(&mesh, &soup.positions, &options, &mut |_| ControlFlow::Continue(())).unwrap();
         let (layout, y) = ExactLayout::from_map(&mesh, &metric, &solution.map).unwrap();
-        assert!(layout.defects(&mesh, &y).none());
+        assert!(layout.defects(&Sectors::unaligned(&mesh), &y).none());
         let z = layout.expand(&y);
         for f in mesh.faces() {
             let corner = |h: Halfedge| {

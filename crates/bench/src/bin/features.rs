@@ -7,10 +7,11 @@
 )]
 
 use clap::Parser;
-use seamstress::{FeatureEdges, MapOptions, MapSolution, make_aligned_map};
+use seamstress::{MapOptions, MapSolution, make_aligned_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::cpu_seconds;
+use seamstress_surface::features::{EdgeSet, sharp_edges};
 use seamstress_surface::{Halfedge, TriMesh};
 use std::error::Error;
 use std::fmt::Write;
@@ -91,13 +92,15 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 fn row(path: &Path, mesh: &Mesh, args: &Args) -> Result<Vec<String>, Box<dyn Error>> {
     let connectivity = &mesh.connectivity;
     let sharp = path.with_extension("sharp");
-    let pairs = if sharp.is_file() {
-        sharp_pairs(&fs::read_to_string(sharp)?, connectivity)?
+    let interior = if sharp.is_file() {
+        let lines = seamstress_io::read_sharp(&sharp)?;
+        let side = |line: seamstress_io::SharpLine| Halfedge(3 * line.face + line.side);
+        EdgeSet::new(connectivity, lines.into_iter().map(side))
     } else {
-        steep_pairs(mesh, args.angle)
+        sharp_edges(connectivity, &mesh.positions, args.angle.to_radians())
     };
-    let features = FeatureEdges::from_pairs(connectivity, &pairs, true)?;
-    let (plain, plain_cpu) = timed(mesh, &FeatureEdges::none(connectivity), args)?;
+    let features = interior.union(connectivity, &EdgeSet::boundary(connectivity));
+    let (plain, plain_cpu) = timed(mesh, &EdgeSet::new(connectivity, []), args)?;
     let (aligned, aligned_cpu) = timed(mesh, &features, args)?;
     if let Some(folder) = &args.maps {
         write(folder, path, mesh, &aligned)?;
@@ -109,7 +112,7 @@ fn row(path: &Path, mesh: &Mesh, args: &Args) -> Result<Vec<String>, Box<dyn Err
     Ok(vec![
         meshes::name(path),
         connectivity.n_faces().to_string(),
-        features.edges(connectivity).count().to_string(),
+        features.len().to_string(),
         (aligned.released.len() - relaxed).to_string(),
         relaxed.to_string(),
         aligned.map.cones().len().to_string(),
@@ -125,7 +128,7 @@ fn row(path: &Path, mesh: &Mesh, args: &Args) -> Result<Vec<String>, Box<dyn Err
 
 fn timed(
     mesh: &Mesh,
-    features: &FeatureEdges,
+    features: &EdgeSet,
     args: &Args,
 ) -> Result<(MapSolution, f64), Box<dyn Error>> {
     let mut options = MapOptions::default();
@@ -136,41 +139,6 @@ fn timed(
     let solution =
         make_aligned_map(&mesh.connectivity, &mesh.positions, features, &options, &mut go_on)?;
     Ok((solution, cpu_seconds().unwrap_or_default() - start))
-}
-
-/// The edges of a `.sharp` file: their number, then a line `type,face,side` for each.
-fn sharp_pairs(text: &str, mesh: &TriMesh) -> Result<Vec<[u32; 2]>, Box<dyn Error>> {
-    let edge = |line: &str| {
-        let numbers: Vec<u32> =
-            line.split(',').map(str::trim).map(str::parse).collect::<Result<_, _>>()?;
-        let [_, face, side] = numbers[..] else {
-            return Err(format!("not a sharp edge: {line}").into());
-        };
-        let h = Halfedge(3 * face + side);
-        Ok([mesh.origin(h).0, mesh.tip(h).0])
-    };
-    text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(edge).collect()
-}
-
-/// The edges between faces whose normals differ by more than an angle in degrees.
-fn steep_pairs(mesh: &Mesh, degrees: f64) -> Vec<[u32; 2]> {
-    let connectivity = &mesh.connectivity;
-    let normal = |h: Halfedge| {
-        let [a, b, c] = connectivity.face_vertices(h.face()).map(|v| mesh.positions[v.at()]);
-        let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-        let n = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-        n.map(|x| x / length.max(1e-30))
-    };
-    let is_steep = |h: Halfedge, t: Halfedge| {
-        let cosine: f64 = normal(h).iter().zip(normal(t)).map(|(x, y)| x * y).sum();
-        cosine.clamp(-1.0, 1.0).acos().to_degrees() > degrees
-    };
-    connectivity
-        .interior_edges()
-        .filter(|&h| connectivity.twin(h).is_some_and(|t| is_steep(h, t)))
-        .map(|h| [connectivity.origin(h).0, connectivity.tip(h).0])
-        .collect()
 }
 
 /// Corners between kept features whose angle in the map is three quarters of a turn.
@@ -210,7 +178,7 @@ fn write(
         writeln!(text, "f {}", corners.join(" "))?;
     }
     fs::write(folder.join(stem).with_extension("obj"), text)?;
-    let pairs = solution.features.pairs(&mesh.connectivity);
+    let pairs = solution.features.vertex_pairs(&mesh.connectivity);
     let lines: String = pairs.iter().map(|[a, b]| format!("{a} {b}\n")).collect();
     fs::write(folder.join(stem).with_extension("pairs"), lines)?;
     Ok(())

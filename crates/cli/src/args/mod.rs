@@ -1,8 +1,8 @@
 //! The command line.
 
 mod check;
-mod features;
 mod extract;
+mod features;
 mod field;
 mod map;
 mod quads;
@@ -10,8 +10,8 @@ mod start;
 mod texture;
 
 pub(crate) use check::CheckArgs;
-pub(crate) use features::FeatureArgs;
 pub(crate) use extract::ExtractArgs;
+pub(crate) use features::FeatureArgs;
 pub(crate) use field::FieldArgs;
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};

@@ -1,9 +1,9 @@
 //! Feature edges that no map can align, or only at a price nobody wants to pay.
 
-use super::FeatureEdges;
 use super::sectors::Sectors;
 use crate::cut::Ordered;
-use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_surface::features::{EdgeSet, dihedral_angle};
+use seamstress_surface::{Face, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
 /// Why a feature edge is not aligned.
@@ -48,39 +48,39 @@ const NEEDLE: f64 = 0.25;
 
 /// Removes features that contradict each other: of three in a triangle the flattest; of the two that bound
 /// a needle or a cap the weaker one (dihedral angle times length). Boundary edges go last.
-///
-/// `strength` is the dihedral angle per half-edge; see [`dihedral_angles`].
 pub(crate) fn drop_conflicts(
     mesh: &TriMesh,
+    positions: &[[f64; 3]],
     metric: &Metric,
-    dihedral: &HalfedgeData<f64>,
-    features: &mut FeatureEdges,
-) -> Vec<ReleasedFeature> {
-    let mut released = Vec::new();
-    let mut drop = |features: &mut FeatureEdges, h: Halfedge, reason| {
-        features.set(mesh, h, false);
-        released.push(ReleasedFeature { vertices: [mesh.origin(h).0, mesh.tip(h).0], reason });
-    };
+    features: EdgeSet,
+) -> (EdgeSet, Vec<ReleasedFeature>) {
+    let angle = |h| dihedral_angle(mesh, positions, h).unwrap_or(0.0);
+    let dihedral: HalfedgeData<f64> = mesh.halfedges().map(angle).collect();
     let flat = |h: &Halfedge| (mesh.twin(*h).is_none(), Ordered(dihedral[*h]));
-    for f in mesh.faces() {
-        let sides = f.halfedges();
-        if sides.iter().all(|&h| features.contains(h))
-            && let Some(h) = sides.into_iter().min_by_key(flat)
-        {
-            drop(features, h, ReleaseReason::ThreeInTriangle);
-        }
-    }
+    let full = mesh.faces().map(Face::halfedges);
+    let full = full.filter(|sides| sides.iter().all(|&h| features.contains(h)));
+    let flattest: Vec<Halfedge> =
+        full.filter_map(|sides| sides.into_iter().min_by_key(flat)).collect();
+    let dropped = EdgeSet::new(mesh, flattest);
+    let mut released = released(mesh, dropped.edges(), ReleaseReason::ThreeInTriangle);
+    let mut kept = features.without(mesh, dropped.edges().iter().copied());
     for reason in [ReleaseReason::Needle, ReleaseReason::Cap] {
         // Each round removes an edge of every bad sector; there are no more rounds than edges.
         loop {
-            let weaker = weaker_edges(mesh, metric, dihedral, features, reason);
+            let weaker = weaker_edges(mesh, metric, &dihedral, &kept, reason);
             if weaker.is_empty() {
                 break;
             }
-            weaker.into_iter().for_each(|h| drop(features, h, reason));
+            released.extend(self::released(mesh, &weaker, reason));
+            kept = kept.without(mesh, weaker);
         }
     }
-    released
+    (kept, released)
+}
+
+fn released(mesh: &TriMesh, edges: &[Halfedge], reason: ReleaseReason) -> Vec<ReleasedFeature> {
+    let ends = |h: Halfedge| [mesh.origin(h).0, mesh.tip(h).0];
+    edges.iter().map(|&h| ReleasedFeature { vertices: ends(h), reason }).collect()
 }
 
 /// The weaker of the two edges of every needle or cap; sectors that share an edge with one before them
@@ -89,14 +89,14 @@ fn weaker_edges(
     mesh: &TriMesh,
     metric: &Metric,
     dihedral: &HalfedgeData<f64>,
-    features: &FeatureEdges,
+    features: &EdgeSet,
     reason: ReleaseReason,
 ) -> Vec<Halfedge> {
     let sectors = Sectors::new(mesh, metric, features);
     let slit = sectors.slit();
     let curvature = metric.curvature(slit);
     let mut degree = VertexData::filled(mesh.n_vertices(), 0);
-    for h in features.edges(mesh) {
+    for &h in features.edges() {
         degree[mesh.origin(h)] += 1;
         degree[mesh.tip(h)] += 1;
     }
@@ -135,8 +135,8 @@ pub(crate) fn release_near(
     mesh: &TriMesh,
     mut near: VertexData<bool>,
     rings: usize,
-    features: &mut FeatureEdges,
-) -> Vec<ReleasedFeature> {
+    features: &EdgeSet,
+) -> (EdgeSet, Vec<ReleasedFeature>) {
     for _ in 0..rings {
         let inner = near.clone();
         for f in mesh.faces() {
@@ -146,32 +146,8 @@ pub(crate) fn release_near(
             }
         }
     }
-    let touched: Vec<Halfedge> =
-        features.edges(mesh).filter(|&h| near[mesh.origin(h)] || near[mesh.tip(h)]).collect();
-    for &h in &touched {
-        features.set(mesh, h, false);
-    }
-    let release = |h: Halfedge| ReleasedFeature {
-        vertices: [mesh.origin(h).0, mesh.tip(h).0],
-        reason: ReleaseReason::NoLayout,
-    };
-    touched.into_iter().map(release).collect()
-}
-
-/// Angle between the normals of the faces at each edge, radians; zero on the boundary and at faces without
-/// area.
-pub(crate) fn dihedral_angles(mesh: &TriMesh, positions: &[[f64; 3]]) -> HalfedgeData<f64> {
-    let normal = |h: Halfedge| {
-        let [a, b, c] = mesh.face_vertices(h.face()).map(|v| positions[v.at()]);
-        let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-        [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-    };
-    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let angle = |h: Halfedge| {
-        let t = mesh.twin(h)?;
-        let (m, n) = (normal(h), normal(t));
-        let cosine = dot(m, n) / (dot(m, m).sqrt() * dot(n, n).sqrt());
-        cosine.is_finite().then(|| cosine.clamp(-1.0, 1.0).acos())
-    };
-    mesh.halfedges().map(|h| angle(h).unwrap_or(0.0)).collect()
+    let touches = |h: &Halfedge| near[mesh.origin(*h)] || near[mesh.tip(*h)];
+    let touched: Vec<Halfedge> = features.edges().iter().copied().filter(touches).collect();
+    let released = released(mesh, &touched, ReleaseReason::NoLayout);
+    (features.without(mesh, touched), released)
 }

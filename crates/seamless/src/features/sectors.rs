@@ -1,7 +1,7 @@
 //! Sectors: the fans of corners between aligned edges, on which indices live.
 
-use super::FeatureEdges;
 use crate::rounding::index_bounds;
+use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
@@ -65,14 +65,14 @@ impl<'m> Sectors<'m> {
 
     /// Slits a mesh along its feature edges; the metric tells which angles the corners would like.
     #[must_use]
-    pub fn new(mesh: &'m TriMesh, metric: &Metric, features: &FeatureEdges) -> Self {
+    pub fn new(mesh: &'m TriMesh, metric: &Metric, features: &EdgeSet) -> Self {
         if features.is_empty() {
             return Self::unaligned(mesh);
         }
         let aligned: HalfedgeData<bool> = mesh.halfedges().map(|h| features.contains(h)).collect();
         let (slit, vertex) = mesh.slit(&aligned);
         let mut degree = VertexData::filled(mesh.n_vertices(), 0);
-        for h in features.edges(mesh) {
+        for &h in features.edges() {
             degree[mesh.origin(h)] += 1;
             degree[mesh.tip(h)] += 1;
         }

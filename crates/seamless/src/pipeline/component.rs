@@ -4,14 +4,13 @@ use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
-use crate::features::{
-    FeatureEdges, ReleasedFeature, Sectors, dihedral_angles, drop_conflicts, release_near,
-};
+use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
 use crate::layout::exact::ExactLayout;
 use crate::layout::safeguards::{LayoutError, lay_out, way_back};
-use crate::map::{SeamlessMap, Violations};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
 use num_complex::Complex64;
+use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Component, Halfedge, Metric, TriMesh, VertexData};
 use std::time::Instant;
 
@@ -26,7 +25,7 @@ pub(super) struct ComponentMap {
     /// UVs per corner, mesh units.
     pub(super) uvs: Vec<[f64; 2]>,
     /// The edges that are aligned.
-    pub(super) features: FeatureEdges,
+    pub(super) features: EdgeSet,
     /// Those that were to be, but are not.
     pub(super) released: Vec<ReleasedFeature>,
     pub(super) stats: ComponentStats,
@@ -38,16 +37,15 @@ pub(super) fn map_component(
     piece: &Component,
     positions: &[[f64; 3]],
     start: &Start,
-    features: &FeatureEdges,
+    features: &EdgeSet,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<ComponentMap, LayoutError> {
     let mesh = &piece.mesh;
     let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
     let metric = Metric::from_positions(mesh, &positions);
-    let mut features = features.of_component(piece);
-    let mut released =
-        drop_conflicts(mesh, &metric, &dihedral_angles(mesh, &positions), &mut features);
+    let (mut features, mut released) =
+        drop_conflicts(mesh, &positions, &metric, in_component(features, piece));
     for round in 0..=RELEASE_ROUNDS {
         if features.is_empty() {
             break;
@@ -62,10 +60,21 @@ pub(super) fn map_component(
             LayoutError::Defective(defects) if round < RELEASE_ROUNDS => defects.vertices(mesh),
             _ => VertexData::filled(mesh.n_vertices(), true),
         };
-        released.extend(release_near(mesh, near, round, &mut features));
+        let (kept, more) = release_near(mesh, near, round, &features);
+        features = kept;
+        released.extend(more);
     }
     let (uvs, stats) = map_unaligned(mesh, &metric, start, options, watch)?;
     Ok(ComponentMap { uvs, features, released, stats })
+}
+
+/// The edges of a set in a component, in its own ids.
+fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
+    let local = |h: &Halfedge| {
+        let whole = piece.faces[h.face().at()].halfedge(h.side());
+        edges.contains(whole)
+    };
+    EdgeSet::new(&piece.mesh, piece.mesh.halfedges().filter(local))
 }
 
 /// Maps one component with nothing aligned, in whichever metric it takes.
@@ -129,7 +138,11 @@ fn solve(
         candidates.push(corner_uvs(mesh, plain, &laid.layout, &laid.y));
     }
     // The thinnest triangles may flip when the result is scaled and moved: look at what is given out.
-    let certify = |uvs: &Vec<_>| SeamlessMap::certify(mesh, uvs.clone(), &options.tolerance);
+    let aligned = EdgeSet::new(mesh, sectors.aligned()).vertex_pairs(mesh);
+    let certify = |uvs: &Vec<_>| {
+        let map = SeamlessMap::certify(mesh, uvs.clone(), &options.tolerance)?;
+        Alignment::certify(mesh, &map, &aligned, &AlignmentTolerance::default())
+    };
     let mut failure = Violations(Vec::new());
     let certified = candidates.into_iter().rev().find(|uvs| match certify(uvs) {
         Ok(_) => true,

@@ -9,16 +9,17 @@ mod start;
 pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
 pub use start::Start;
 
-use crate::features::{FeatureEdges, ReleasedFeature};
+use crate::features::ReleasedFeature;
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
 use crate::layout::safeguards::{LayoutError, Route};
-use crate::map::{SeamlessMap, Tolerance, Violations};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
-use seamstress_surface::{Component, Face, Metric, TriMesh, Vertex, components};
+use seamstress_surface::features::EdgeSet;
+use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, Vertex, components};
 
 /// Settings of the direct method.
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +57,9 @@ pub struct MapSolution {
     /// Its distortion.
     pub distortion: Distortion,
     /// The edges that run along the axes: every feature edge asked for that was not released.
-    pub features: FeatureEdges,
+    pub features: EdgeSet,
+    /// The certificate of their alignment.
+    pub alignment: Alignment,
     /// Feature edges that could not be aligned, component by component.
     pub released: Vec<ReleasedFeature>,
     /// One entry per connected component, in order of first faces.
@@ -164,7 +167,7 @@ pub fn make_map(
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    make_aligned_map(mesh, positions, &FeatureEdges::none(mesh), options, observer)
+    make_aligned_map(mesh, positions, &EdgeSet::new(mesh, []), options, observer)
 }
 
 /// Makes a seamless map of every component of a mesh in which feature edges run along the axes.
@@ -184,7 +187,7 @@ pub fn make_map(
 pub fn make_aligned_map(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
-    features: &FeatureEdges,
+    features: &EdgeSet,
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
@@ -206,22 +209,23 @@ pub fn make_map_from(
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
     start.check(mesh)?;
-    run(mesh, positions, start, &FeatureEdges::none(mesh), options, observer)
+    run(mesh, positions, start, &EdgeSet::new(mesh, []), options, observer)
 }
 
 fn run(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
     start: &Start,
-    features: &FeatureEdges,
+    features: &EdgeSet,
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    let (mut kept, mut released) = (FeatureEdges::none(mesh), Vec::new());
+    let (mut kept, mut released) = (Vec::new(), Vec::new());
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
         let mapped =
             map_component(piece, positions, &start.restrict(piece), features, options, watch)?;
-        kept.add_component(piece, &mapped.features);
+        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
+        kept.extend(mapped.features.edges().iter().map(whole));
         released.extend(mapped.released.into_iter().map(|mut feature| {
             feature.vertices = feature.vertices.map(|v| piece.vertices[Vertex(v)].0);
             feature
@@ -234,7 +238,10 @@ fn run(
     let metric = Metric::from_positions(mesh, positions);
     let distortion = distortion(mesh, &metric, &corner_uvs);
     let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    Ok(MapSolution { map, distortion, features: kept, released, components })
+    let features = EdgeSet::new(mesh, kept);
+    let tolerance = AlignmentTolerance::default();
+    let alignment = Alignment::certify(mesh, &map, &features.vertex_pairs(mesh), &tolerance)?;
+    Ok(MapSolution { map, distortion, features, alignment, released, components })
 }
 
 type Piecewise<S> = Result<(Vec<[f64; 2]>, S), LayoutError>;

@@ -36,6 +36,13 @@ impl EdgeSet {
         Self::new(mesh, self.edges.iter().chain(&other.edges).copied())
     }
 
+    /// These edges without some, which either half-edge names.
+    #[must_use]
+    pub fn without(&self, mesh: &TriMesh, removed: impl IntoIterator<Item = Halfedge>) -> Self {
+        let removed = Self::new(mesh, removed);
+        Self::new(mesh, self.edges.iter().copied().filter(|&h| !removed.contains(h)))
+    }
+
     /// Whether the edge of a half-edge belongs to the set.
     #[inline]
     pub fn contains(&self, h: Halfedge) -> bool {
