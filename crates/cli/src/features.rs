@@ -2,12 +2,15 @@
 
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
+use crate::report;
+use seamstress::{Alignment, AlignmentTolerance, MapSolution, ReleasedFeature, Violations};
 use seamstress_io::{read_pairs, read_sharp};
 use seamstress_surface::features::{
     EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
 };
 use seamstress_surface::{Halfedge, Metric, TriMesh};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -165,6 +168,50 @@ fn kind_name(kind: NodeKind) -> &'static str {
         NodeKind::Turn => "turn",
         NodeKind::Junction => "junction",
         _ => "other",
+    }
+}
+
+/// What became of features: aligned, or released for a reason.
+#[derive(Debug)]
+pub(crate) struct AlignedFeatures {
+    pub(crate) asked: Features,
+    /// The ends of those that are aligned.
+    pub(crate) kept: Vec<[u32; 2]>,
+    pub(crate) released: Vec<ReleasedFeature>,
+    pub(crate) alignment: Alignment,
+}
+
+impl AlignedFeatures {
+    /// Certifies that every feature is aligned that the solution does not name as released.
+    ///
+    /// # Errors
+    /// What is not aligned.
+    pub(crate) fn certify(
+        connectivity: &TriMesh,
+        asked: Features,
+        solution: &MapSolution,
+    ) -> Result<Self, Violations> {
+        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let released = solution.released.clone();
+        let gone: BTreeSet<[u32; 2]> = released.iter().map(|f| ordered(f.vertices)).collect();
+        let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
+        let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
+        let tolerance = AlignmentTolerance::default();
+        let alignment = Alignment::certify(connectivity, &solution.map, &kept, &tolerance)?;
+        Ok(Self { asked, kept, released, alignment })
+    }
+
+    /// The ends of the features that are not aligned.
+    pub(crate) fn released_pairs(&self) -> Vec<[u32; 2]> {
+        self.released.iter().map(|feature| feature.vertices).collect()
+    }
+
+    pub(crate) fn json(&self) -> Value {
+        let mut value = self.asked.json();
+        value["kept"] = self.kept.len().into();
+        value["released"] = json!(self.released);
+        value["alignment"] = report::alignment_json(&self.alignment);
+        value
     }
 }
 

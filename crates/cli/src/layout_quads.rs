@@ -39,7 +39,7 @@ pub(crate) fn run(args: &LayoutQuadsArgs) -> Result<Status, Failure> {
     let layout = lay_out(args, &quads)?;
     let product = certify(args, &quads, layout)?;
     let pictures = match &args.pictures {
-        Some(_) => pictures::draw(&product.soup, &product.map, &args.texture)
+        Some(_) => pictures::draw(&product.soup, &product.map, None, &args.texture)
             .map_err(|cause| Failure::NoPicture { file: args.quads.clone(), cause })?
             .to_vec(),
         None => Vec::new(),

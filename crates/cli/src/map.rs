@@ -1,6 +1,7 @@
 //! `seamstress map`.
 
-use crate::args::{MapArgs, Method, StartArgs};
+use crate::args::{FeatureArgs, MapArgs, Method, StartArgs};
+use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
 use crate::made::{self, Made};
@@ -11,7 +12,9 @@ use crate::report::{self, Cost, MapReport, VERSION};
 use crate::start::read_start;
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::{FieldMapOptions, MapError, make_field_map, make_map_from};
+use seamstress::{
+    FieldMapOptions, MapError, Start, make_aligned_map, make_field_map, make_map_from,
+};
 use seamstress_io::{MapObj, write_map_obj, write_singularities};
 use seamstress_surface::TriMesh;
 use serde_json::json;
@@ -22,6 +25,8 @@ use std::path::{Path, PathBuf};
 struct Product {
     mesh: LoadedMesh,
     made: Made,
+    /// What became of the features, if any were asked for.
+    features: Option<AlignedFeatures>,
     pictures: Option<[Vec<u8>; 3]>,
 }
 
@@ -40,6 +45,10 @@ pub(crate) fn run(args: &MapArgs) -> Result<Status, Failure> {
 
 /// The outputs; the map last, since it says that the rest is there.
 fn plan(args: &MapArgs) -> Result<Plan, Failure> {
+    if args.start.method == Method::Field && args.features.is_given() {
+        let text = "features are aligned by the direct method; leave out `--method field`";
+        return Err(Failure::Usage(text.into()));
+    }
     let mut targets = Vec::new();
     if let Some(folder) = &args.pictures {
         targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
@@ -49,7 +58,8 @@ fn plan(args: &MapArgs) -> Result<Plan, Failure> {
     targets.push(Target::new(Kind::Map, &args.output));
     let start = &args.start;
     let given = [&start.field, &start.matching, &start.cones].into_iter().flatten();
-    let inputs: Vec<&Path> = given.chain([&args.mesh]).map(PathBuf::as_path).collect();
+    let given = given.map(PathBuf::as_path).chain(args.features.files());
+    let inputs: Vec<&Path> = given.chain([args.mesh.as_path()]).collect();
     Plan::new(&inputs, args.pictures.as_deref(), targets)
 }
 
@@ -60,7 +70,8 @@ fn make(args: &MapArgs, mut worker: Worker) -> Result<Product, Failure> {
         mesh.tell_findings();
     }
     let connectivity = mesh.connect()?;
-    let made = solve(args, &mesh, &connectivity, &mut worker).map_err(|failure| match failure {
+    let solved = solve(args, &mesh, &connectivity, &mut worker);
+    let (made, features) = solved.map_err(|failure| match failure {
         Unmade::Failure(failure) => failure,
         Unmade::Cause(cause) => {
             let file = mesh.path.clone();
@@ -69,19 +80,22 @@ fn make(args: &MapArgs, mut worker: Worker) -> Result<Product, Failure> {
                 (cause @ (MapError::Field(_) | MapError::Cones(_)), _) => {
                     Failure::BadStart { file, text: cause.to_string() }
                 }
+                (cause @ MapError::Released { .. }, _) => Failure::Released { file, cause },
                 (cause, _) => Failure::NoMap { file, cause },
             }
         }
     })?;
     worker.stop.lift_limit();
     let pictures = match (&args.pictures, made.certified()) {
-        (Some(_), Some(map)) => Some(pictures::draw(&mesh.soup, map, &args.texture)),
+        (Some(_), Some(map)) => {
+            Some(pictures::draw(&mesh.soup, map, features.as_ref(), &args.texture))
+        }
         _ => None,
     };
     let pictures = pictures
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, made, pictures })
+    Ok(Product { mesh, made, features, pictures })
 }
 
 /// Why there is no map to write.
@@ -102,20 +116,31 @@ impl From<MapError> for Unmade {
     }
 }
 
-/// The map by the method asked for.
+/// The map by the method asked for, and its features if any were.
 fn solve(
     args: &MapArgs,
     mesh: &LoadedMesh,
     connectivity: &TriMesh,
     worker: &mut Worker,
-) -> Result<Made, Unmade> {
+) -> Result<(Made, Option<AlignedFeatures>), Unmade> {
     let positions = &mesh.soup.positions;
     let mut observe = |progress| worker.observe(progress);
     if !args.start.is_baseline() {
         let start = read_start(&args.start, connectivity, positions)?;
         let options = args.options();
-        let solution = make_map_from(connectivity, positions, &start, &options, &mut observe)?;
-        return Ok(Made::from(solution));
+        if !matches!(start, Start::Mesh) {
+            let solution = make_map_from(connectivity, positions, &start, &options, &mut observe)?;
+            return Ok((Made::from(solution), None));
+        }
+        let FeatureArgs { features: sources, align_boundary } = &args.features;
+        let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
+        let solution =
+            make_aligned_map(connectivity, positions, &asked.edges, &options, &mut observe)?;
+        let certify = || AlignedFeatures::certify(connectivity, asked, &solution);
+        let features = args.features.is_given().then(certify).transpose();
+        let features =
+            features.map_err(|cause| Failure::Misaligned { file: mesh.path.clone(), cause })?;
+        return Ok((Made::from(solution), features));
     }
     let options =
         FieldMapOptions { iterations: args.start.local_global, ..FieldMapOptions::default() };
@@ -125,7 +150,7 @@ fn solve(
             let file = mesh.path.clone();
             Err(Failure::Uncertified { file, text: made::named(violations) }.into())
         }
-        _ => Ok(made),
+        _ => Ok((made, None)),
     }
 }
 
@@ -164,6 +189,10 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
             "repair": args.repair,
             "cone_bias": args.cone_bias,
             "cone_price": args.cone_price,
+            "features": report::sources_json(&args.features),
+            "align_boundary": args.features.align_boundary,
+            "features_strict": args.features_strict,
+            "corner_weight": args.corner_weight,
             "rounding": args.options().rounding.strategy,
             "start": start_json(&args.start),
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
@@ -172,6 +201,7 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
         input: report::input_json(&product.mesh),
         components: &product.made.components,
         map: product.made.json(),
+        features: product.features.as_ref().map(AlignedFeatures::json),
         files: &plan.targets,
         cost,
     })
@@ -225,7 +255,9 @@ fn write_cones(file: &mut impl Write, product: &Product) -> std::io::Result<()> 
 
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
+    rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     rows.extend(product.made.rows());
+    rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.push(summary::cost_row(cost, &product.made.components));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();

@@ -1,6 +1,6 @@
 //! How a run ends: exit codes, and failures with their messages.
 
-use seamstress::MapError;
+use seamstress::{MapError, Violations};
 use seamstress_io::{ReadError, WriteError};
 use seamstress_quads::QuadFaults;
 use std::path::PathBuf;
@@ -87,6 +87,19 @@ pub(crate) enum Failure {
         file.display()
     )]
     Uncertified { file: PathBuf, text: String },
+    /// Features were released although they must not be.
+    #[error(
+        "{}: {cause}\nNothing was written; without `--features-strict` the map is made without them",
+        file.display()
+    )]
+    Released { file: PathBuf, cause: MapError },
+    /// A bug of ours.
+    #[error(
+        "{}: a map was made, but its features are not aligned: {cause}. Nothing was written. Please \
+         report this with the mesh",
+        file.display()
+    )]
+    Misaligned { file: PathBuf, cause: Violations },
     #[error("{}: stopped: {reason}. Nothing was written", file.display())]
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
@@ -112,6 +125,8 @@ impl Failure {
             Self::NoManifold { .. }
             | Self::NoMap { .. }
             | Self::Uncertified { .. }
+            | Self::Released { .. }
+            | Self::Misaligned { .. }
             | Self::NoPicture { .. }
             | Self::Internal { .. } => Status::NoMap,
             Self::Stopped { .. } => Status::Stopped,

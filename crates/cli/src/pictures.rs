@@ -1,7 +1,7 @@
 //! Pictures of a map as PNG files.
 
 use crate::args::TextureArgs;
-use crate::features::Features;
+use crate::features::{AlignedFeatures, Features};
 use seamstress::SeamlessMap;
 use seamstress_quads::{IrregularVertex, QuadMesh};
 use seamstress_render::{
@@ -12,21 +12,26 @@ use seamstress_surface::soup::TriangleSoup;
 /// The files, in the order of [`draw`].
 pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
 
-/// Draws the surface from both sides and the layout; the texture is turned, scaled and shifted first.
+/// Draws the surface from both sides and the layout, with the features, aligned and released; the texture
+/// is turned, scaled and shifted first.
 pub(crate) fn draw(
     soup: &TriangleSoup,
     map: &SeamlessMap,
+    features: Option<&AlignedFeatures>,
     texture: &TextureArgs,
 ) -> Result<[Vec<u8>; 3], RenderError> {
     let corner_uvs: Vec<[f64; 2]> = map.corner_uvs().iter().map(|&uv| texture.apply(uv)).collect();
     let cones: Vec<(u32, i32)> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
     let seams: Vec<[u32; 2]> = map.seams().iter().map(|s| s.vertices).collect();
+    let released = features.map(AlignedFeatures::released_pairs).unwrap_or_default();
     let scene = Scene {
         positions: &soup.positions,
         faces: &soup.faces,
         corner_uvs: Some(&corner_uvs),
         cones: &cones,
         seams: &seams,
+        features: features.map_or(&[], |features| &features.kept),
+        released: &released,
         ..Scene::default()
     };
     let surface = |view| {

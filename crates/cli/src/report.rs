@@ -25,6 +25,9 @@ pub(crate) struct MapReport<'a> {
     pub(crate) components: &'a [ComponentStats],
     #[serde(flatten)]
     pub(crate) map: Value,
+    /// The features asked for and what became of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) features: Option<Value>,
     pub(crate) files: &'a [Target],
     pub(crate) cost: Cost,
 }

@@ -1,12 +1,15 @@
 //! Summaries for people.
 
-use crate::features::Features;
+use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::report::{Cost, cones_by_index, tau};
 use crate::text::{counted, figure, row};
 use seamstress::quality::Distortion;
 use seamstress::{Alignment, ComponentStats, SeamlessMap};
 use seamstress_surface::features::NodeKind;
+
+/// Released features that are listed; the report has them all.
+const SHOWN_RELEASED: usize = 10;
 
 /// Name, size and topology of a mesh.
 pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
@@ -87,6 +90,26 @@ pub(crate) fn alignment_row(alignment: &Alignment) -> String {
         alignment.sector_error
     );
     row("alignment", &text)
+}
+
+/// The certificate of alignment, and the features that are not aligned.
+pub(crate) fn aligned_rows(features: &AlignedFeatures) -> Vec<String> {
+    let mut rows = vec![alignment_row(&features.alignment)];
+    let released = &features.released;
+    if released.is_empty() {
+        return rows;
+    }
+    let asked = counted(features.asked.edges.len(), "edge");
+    rows.push(row("released", &format!("{} of {asked} not aligned", released.len())));
+    rows.extend(released.iter().take(SHOWN_RELEASED).map(|feature| {
+        let [a, b] = feature.vertices;
+        row("", &format!("edge {a}-{b}: {}", feature.reason))
+    }));
+    if released.len() > SHOWN_RELEASED {
+        let more = released.len() - SHOWN_RELEASED;
+        rows.push(row("", &format!("and {more} more; the report has them all")));
+    }
+    rows
 }
 
 /// Distortion, cones, seams and certificate of a map.

@@ -162,7 +162,7 @@ fn boxes_map_isometrically_with_the_expected_cones() {
 fn boundaries_of_disks_and_annuli_run_along_the_axes() {
     for soup in [kit::disk_grid(6, 5), kit::annulus(12, 4), kit::cylinder(10, 4)] {
         let solution = aligned(&soup, &of_pairs(&soup, &[], true));
-        assert!(solution.features.len() > 0);
+        assert!(!solution.features.is_empty());
     }
     // A rectangle is one already.
     let soup = kit::disk_grid(6, 5);

@@ -5,6 +5,7 @@
 mod common;
 
 use common::{assert_seamless, mapped, mesh_of, surface};
+use seamstress::features::Sectors;
 use seamstress::field::{
     ConePrescription, CrossField, FieldError, Homology, PrescriptionError, directions_in_space,
     extract, frames_from_directions, map_indices, matched_cut, matchings_from_rows, residual_field,
@@ -180,7 +181,10 @@ fn a_cut_of_a_field_has_its_indices() {
         let (mesh, metric) = surface(&soup);
         let (_, _, field) = field_of(&soup, &mapped(&soup));
         let (matched, frames) = matched_cut(&mesh, &metric, &field);
-        assert_eq!(matched.cone_indices(&mesh, &metric), field.indices(&mesh));
+        assert_eq!(
+            matched.sector_indices(&Sectors::unaligned(&mesh), &metric),
+            field.indices(&mesh)
+        );
         assert_eq!(frames.len(), mesh.n_faces());
     }
 }

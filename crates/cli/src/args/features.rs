@@ -17,7 +17,7 @@ pub(crate) struct FeatureArgs {
     #[arg(long, value_name = "SOURCE", verbatim_doc_comment)]
     pub(crate) features: Vec<FeatureSource>,
 
-    /// Count the boundary among the features
+    /// Align the boundary as well
     #[arg(long)]
     pub(crate) align_boundary: bool,
 }

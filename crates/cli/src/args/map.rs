@@ -1,6 +1,6 @@
 //! Arguments of `map`.
 
-use super::{EXIT_CODES, RunArgs, StartArgs, TextureArgs, not_negative};
+use super::{EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative};
 use seamstress::MapOptions;
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use std::path::PathBuf;
@@ -10,6 +10,7 @@ Examples:
   seamstress map bunny.ply -o bunny.obj
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress map part.obj -o part_map.obj --features angle:40 --align-boundary
   seamstress map part.off -o part.obj --json | jq .distortion.tau
   seamstress map eight.off -o eight.obj --field eight.rawfield
   seamstress map eight.off -o eight.obj --cones eight.sing --free-cones
@@ -72,6 +73,23 @@ pub(crate) struct MapArgs {
     )]
     pub(crate) cone_price: f64,
 
+    #[command(flatten)]
+    pub(crate) features: FeatureArgs,
+
+    /// Fail with exit code 3 if a feature cannot be aligned, instead of releasing and reporting it
+    #[arg(long)]
+    pub(crate) features_strict: bool,
+
+    /// How much corners between features keep to their own angle: larger values give fewer false
+    /// corners and more distortion
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = RoundingOptions::default().corner_weight
+    )]
+    pub(crate) corner_weight: f64,
+
     /// How the rounding of a seam is judged: by its angle and the cones it makes, or by its effect
     /// estimated on a small patch as well
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
@@ -98,11 +116,13 @@ impl MapArgs {
     pub(crate) fn options(&self) -> MapOptions {
         let mut options = MapOptions::default();
         options.rounding.cone_bias = self.cone_bias;
+        options.rounding.corner_weight = self.corner_weight;
         options.rounding.strategy = match self.rounding {
             Rounding::ConeBias => RoundingStrategy::ConeBias,
             Rounding::LocalEstimation => RoundingStrategy::LocalEstimation,
         };
         options.cone_price = self.cone_price;
+        options.strict_features = self.features_strict;
         options
     }
 }

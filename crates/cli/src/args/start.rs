@@ -8,17 +8,17 @@ use std::path::PathBuf;
 pub(crate) struct StartArgs {
     /// Start from this cross field, a .rawfield, or a .rosy with a vector per face: the map has its cones
     /// and follows it around handles
-    #[arg(long, value_name = "FIELD", conflicts_with_all = ["cones", "method"])]
+    #[arg(long, value_name = "FIELD", conflicts_with_all = ["cones", "method", "features", "align_boundary"])]
     pub(crate) field: Option<PathBuf>,
 
     /// Start from these matchings modulo 4, with the frames of `--field`, or without it with the
     /// smoothest frames
-    #[arg(long, value_name = "FILE.matching", conflicts_with_all = ["cones", "method"])]
+    #[arg(long, value_name = "FILE.matching", conflicts_with_all = ["cones", "method", "features", "align_boundary"])]
     pub(crate) matching: Option<PathBuf>,
 
     /// Make exactly these cones: a .sing file, or a file with the total angle of every vertex in radians
     /// (those of the boundary are free)
-    #[arg(long, value_name = "FILE", conflicts_with = "method")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["method", "features", "align_boundary"])]
     pub(crate) cones: Option<PathBuf>,
 
     /// Let vertices that the .sing file does not list become cones; an index of 0 keeps one from it

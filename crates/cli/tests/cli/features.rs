@@ -261,6 +261,75 @@ fn what_is_not_aligned_is_named() {
 }
 
 #[test]
+fn a_map_has_its_features_on_its_axes() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::l_bracket());
+    let aligned = ["--features", "angle:40"];
+    let arguments = ["map", "in.obj", "-o", "map.obj", "--report", "r.json", "--features-strict"];
+    let run = folder.expect(0, &[&arguments[..], &aligned].concat());
+    assert!(run.stdout.contains("features     36 edges: 18 curves"), "{}", run.stdout);
+    assert!(run.stdout.contains("alignment    passed: 36 edges within"), "{}", run.stdout);
+    assert!(!run.stdout.contains("released"), "{}", run.stdout);
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    assert_eq!(report["options"]["features"], serde_json::json!(["angle:40"]));
+    let found = &report["features"];
+    assert_eq!((&found["edges"], &found["kept"]), (&36.into(), &36.into()));
+    assert_eq!(
+        (&found["released"], &found["alignment"]["sides"]),
+        (&serde_json::json!([]), &72.into())
+    );
+    folder.expect(0, &[&["check", "in.obj", "map.obj"][..], &aligned].concat());
+    // Without features there is nothing about them.
+    let run = folder.expect(0, &["map", "in.obj", "-o", "map.obj", "--json"]);
+    assert!(!run.stdout.contains("\"alignment\""), "{}", run.stdout);
+}
+
+#[test]
+fn released_features_are_listed_drawn_and_refused_when_strict() {
+    let folder = Folder::new();
+    // All three sides of a triangle cannot be aligned.
+    folder.write_obj("in.obj", &testkit::disk_grid(4, 4));
+    folder.write("p.txt", "6 7\n7 12\n12 6\n");
+    let map = ["map", "in.obj", "-o", "map.obj", "--features", "pairs:p.txt"];
+    let strict = folder.expect(3, &[&map[..], &["--features-strict"]].concat());
+    assert!(strict.stderr.contains("third feature edge of a triangle"), "{strict:?}");
+    assert_eq!(folder.names(), ["in.obj", "p.txt"]);
+    let run = folder.expect(0, &[&map[..], &["--report", "r.json", "--pictures", "new"]].concat());
+    assert!(run.stdout.contains("released     "), "{}", run.stdout);
+    assert!(run.stdout.contains(": third feature edge of a triangle"), "{}", run.stdout);
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    let released = report["features"]["released"].as_array().unwrap();
+    assert_eq!(released[0]["reason"], "three-in-triangle");
+    assert_eq!(report["features"]["kept"], 3 - released.len());
+    // What is kept is aligned, what is released is named.
+    let ends = |edge: &Value| [&edge["vertices"][0], &edge["vertices"][1]].map(Value::to_string);
+    let gone: Vec<_> = released.iter().map(ends).collect();
+    let kept: Vec<_> = [["6", "7"], ["7", "12"], ["12", "6"]]
+        .into_iter()
+        .filter(|[a, b]| !gone.iter().any(|g| g == &[*a, *b] || g == &[*b, *a]))
+        .map(|pair| pair.join(" "))
+        .collect();
+    assert_eq!(kept.len(), 3 - gone.len());
+    folder.write("kept.txt", kept.join("\n"));
+    folder.expect(0, &["check", "in.obj", "map.obj", "--features", "pairs:kept.txt"]);
+    folder.expect(1, &["check", "in.obj", "map.obj", "--features", "pairs:p.txt"]);
+}
+
+#[test]
+fn maps_refuse_what_checks_refuse() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    folder.write("p.txt", "0 99\n");
+    let run = folder.expect(1, &["map", "in.obj", "-o", "map.obj", "--features", "pairs:p.txt"]);
+    assert!(run.stderr.contains("line 1: vertex 99 of the pair 0-99 does not exist"), "{run:?}");
+    for arguments in [&["p.txt"][..], &["map.obj", "--report", "p.txt"]] {
+        let map = ["map", "in.obj", "--features", "pairs:p.txt", "-o"];
+        folder.expect(2, &[&map[..], arguments].concat());
+    }
+    assert_eq!(folder.names(), ["in.obj", "p.txt"]);
+}
+
+#[test]
 fn the_sharp_file_of_the_collection() {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
     let meshes = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
