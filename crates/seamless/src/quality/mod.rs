@@ -1,5 +1,12 @@
 //! Figures of merit of a map.
 
 mod distortion;
+mod measure;
+mod scale;
+mod singular;
+mod summary;
 
-pub use distortion::{Distortion, Percentiles, distortion};
+pub use distortion::{Distortion, distortion};
+pub use measure::{Aggregate, Measure};
+pub use singular::SingularValues;
+pub use summary::{Percentiles, Summary, measure_all, summarize};
