@@ -2,6 +2,7 @@
 
 pub mod alignment;
 pub mod arap;
+pub mod conic;
 pub mod energy;
 pub mod exact;
 pub mod homotopy;

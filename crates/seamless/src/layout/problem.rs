@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Assembly, Buckets, Cholesky, NotPositiveDefinite};
 use seamstress_surface::{Metric, TriMesh};
+use std::ops::Range;
 
 /// How the six corner coordinates of a triangle depend on its unknowns.
 enum ElementMap {
@@ -100,7 +101,7 @@ impl LayoutProblem {
 
     /// Assembles gradient and projected Hessian; returns the gradient in the unknowns.
     pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
-        self.fill_triangles(|t, local, block| {
+        self.fill_plain(|t, local, block| {
             let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
             for (k, g) in t.gradients.iter().enumerate() {
                 let d = hessian.gradient;
@@ -139,7 +140,7 @@ impl LayoutProblem {
 
     /// Assembles the Dirichlet form `sum of area |J|^2 / 2` of each coordinate.
     pub fn assemble_dirichlet(&mut self) {
-        self.fill_triangles(|t, _, block| {
+        self.fill_plain(|t, _, block| {
             let mut at = 0;
             for i in 0..6 {
                 for j in 0..=i {
@@ -175,59 +176,169 @@ impl LayoutProblem {
         Err(NotPositiveDefinite)
     }
 
+    /// Factors the assembled matrix, each diagonal entry raised by the given part of itself.
+    ///
+    /// # Errors
+    /// When it is not positive definite to working precision; nothing else is tried.
+    pub fn factorize_as_is(&mut self, raise: f64) -> Result<(), NotPositiveDefinite> {
+        let pattern = self.assembly.pattern();
+        for &k in pattern.diagonal() {
+            self.matrix[k as usize] *= 1.0 + raise;
+        }
+        self.cholesky.factorize(pattern, &self.matrix)
+    }
+
     /// Solves with the last factor in place.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         self.cholesky.solve(rhs);
     }
 
+    /// Assembles a matrix and a vector from a block and a vector per triangle, both in the six corner
+    /// coordinates (the block as the lower triangle by rows), for [`LayoutProblem::factorize`] or
+    /// [`LayoutProblem::factorize_as_is`].
+    ///
+    /// `local` works on the triangle's own `state` and on a tally; the tallies of fixed ranges of triangles
+    /// are returned in order, for reductions that do not depend on the number of threads.
+    pub fn assemble<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        vector: &mut [f64],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,
+    ) -> Vec<T> {
+        let tallies = self.fill_triangles(state, local);
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+        self.assembly.sum_vector(&self.locals, vector);
+        tallies
+    }
+
+    /// Assembles a vector alone, in the way of [`LayoutProblem::assemble`].
+    pub fn assemble_vector<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        vector: &mut [f64],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6]) + Sync,
+    ) -> Vec<T> {
+        let mut tasks = Vec::new();
+        let (mut locals, mut states) = (self.locals.as_mut_slice(), state);
+        for range in chunks(self.triangles.len()) {
+            let (chunk, more_locals) =
+                locals.split_at_mut(span(&range, |e| self.assembly.local(e)));
+            let (state, more_states) = states.split_at_mut(range.len());
+            (locals, states) = (more_locals, more_states);
+            tasks.push((range, chunk, state));
+        }
+        let work = |(range, locals, states): (Range<usize>, &mut [f64], &mut [S])| {
+            let (mut tally, mut l, mut at) = (T::default(), [0.0; 6], 0);
+            for (e, state) in range.zip(states) {
+                local(&self.triangles[e], state, &mut tally, &mut l);
+                let len = self.assembly.local(e).len();
+                pull_vector_back(&self.maps[e], &l, &mut locals[at..at + len]);
+                at += len;
+            }
+            tally
+        };
+        let tallies = tasks.into_par_iter().map(work).collect();
+        self.assembly.sum_vector(&self.locals, vector);
+        tallies
+    }
+
+    /// Visits every triangle with its own state, tallies as in [`LayoutProblem::assemble`].
+    pub fn visit<S: Send, T: Default + Send>(
+        &self,
+        state: &mut [S],
+        local: impl Fn(&Triangle, &mut S, &mut T) + Sync,
+    ) -> Vec<T> {
+        let chunks = self.triangles.par_chunks(CHUNK).zip(state.par_chunks_mut(CHUNK));
+        let work = |(triangles, states): (&[Triangle], &mut [S])| {
+            let mut tally = T::default();
+            for (t, state) in triangles.iter().zip(states) {
+                local(t, state, &mut tally);
+            }
+            tally
+        };
+        chunks.map(work).collect()
+    }
+
+    /// Runs `local` on triangles without state.
+    fn fill_plain(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
+        let mut stateless = vec![(); self.triangles.len()];
+        self.fill_triangles(&mut stateless, |t, (), (): &mut (), l, b| local(t, l, b));
+    }
+
     /// Runs `local` on every triangle in the six corner coordinates and carries the results over to
     /// the element's unknowns.
-    fn fill_triangles(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
+    fn fill_triangles<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,
+    ) -> Vec<T> {
         let assembly = &self.assembly;
         let mut tasks = Vec::new();
         let (mut blocks, mut locals) = (self.blocks.as_mut_slice(), self.locals.as_mut_slice());
-        let count = self.triangles.len();
-        for begin in (0..count).step_by(CHUNK) {
-            let end = (begin + CHUNK).min(count);
-            let block_len = assembly.block(end - 1).end - assembly.block(begin).start;
-            let local_len = assembly.local(end - 1).end - assembly.local(begin).start;
-            let (block, more_blocks) = blocks.split_at_mut(block_len);
-            let (vector, more_locals) = locals.split_at_mut(local_len);
-            (blocks, locals) = (more_blocks, more_locals);
-            tasks.push((begin..end, block, vector));
+        let mut states = state;
+        for range in chunks(self.triangles.len()) {
+            let (block, more_blocks) = blocks.split_at_mut(span(&range, |e| assembly.block(e)));
+            let (vector, more_locals) = locals.split_at_mut(span(&range, |e| assembly.local(e)));
+            let (state, more_states) = states.split_at_mut(range.len());
+            (blocks, locals, states) = (more_blocks, more_locals, more_states);
+            tasks.push((range, block, vector, state));
         }
-        tasks.into_par_iter().for_each(|(range, blocks, locals)| {
-            let (mut b, mut l) = ([0.0; 21], [0.0; 6]);
-            let (mut block_at, mut local_at) = (0, 0);
-            for e in range {
-                local(&self.triangles[e], &mut l, &mut b);
-                let (block_len, local_len) = (assembly.block(e).len(), assembly.local(e).len());
-                let block = &mut blocks[block_at..block_at + block_len];
-                let vector = &mut locals[local_at..local_at + local_len];
-                match &self.maps[e] {
-                    ElementMap::Direct => {
-                        block.copy_from_slice(&b);
-                        vector.copy_from_slice(&l);
-                    }
-                    ElementMap::Matrix(map) => pull_back(map, &b, &l, block, vector),
+        let work =
+            |(range, blocks, locals, states): (Range<usize>, &mut [f64], &mut [f64], &mut [S])| {
+                let (mut tally, mut b, mut l) = (T::default(), [0.0; 21], [0.0; 6]);
+                let (mut block_at, mut local_at) = (0, 0);
+                for (e, state) in range.zip(states) {
+                    local(&self.triangles[e], state, &mut tally, &mut l, &mut b);
+                    let (block_len, local_len) = (assembly.block(e).len(), assembly.local(e).len());
+                    let block = &mut blocks[block_at..block_at + block_len];
+                    pull_block_back(&self.maps[e], &b, block, local_len);
+                    pull_vector_back(
+                        &self.maps[e],
+                        &l,
+                        &mut locals[local_at..local_at + local_len],
+                    );
+                    block_at += block_len;
+                    local_at += local_len;
                 }
-                block_at += block_len;
-                local_at += local_len;
-            }
-        });
+                tally
+            };
+        tasks.into_par_iter().map(work).collect()
     }
 }
 
-/// `B^T H B` and `B^T g` for a row-major 6 x m matrix B.
-fn pull_back(map: &[f64], h: &[f64; 21], g: &[f64; 6], block: &mut [f64], vector: &mut [f64]) {
-    let m = vector.len();
+/// Fixed ranges of triangles, one parallel task each.
+fn chunks(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(CHUNK).map(move |begin| begin..(begin + CHUNK).min(count))
+}
+
+/// Length of what the elements of a range hold, one after the other.
+fn span(range: &Range<usize>, of: impl Fn(usize) -> Range<usize>) -> usize {
+    of(range.end - 1).end - of(range.start).start
+}
+
+/// `B^T g` for the 6 x m matrix B of an element.
+fn pull_vector_back(map: &ElementMap, g: &[f64; 6], vector: &mut [f64]) {
+    match map {
+        ElementMap::Direct => vector.copy_from_slice(g),
+        ElementMap::Matrix(map) => {
+            let m = vector.len();
+            for (column, out) in vector.iter_mut().enumerate() {
+                *out = (0..6).map(|row| map[row * m + column] * g[row]).sum();
+            }
+        }
+    }
+}
+
+/// `B^T H B` for the row-major 6 x m matrix B of an element.
+fn pull_block_back(map: &ElementMap, h: &[f64; 21], block: &mut [f64], m: usize) {
+    let map = match map {
+        ElementMap::Direct => return block.copy_from_slice(h),
+        ElementMap::Matrix(map) => map,
+    };
     let entry = |i: usize, j: usize| {
         let (i, j) = (i.max(j), i.min(j));
         h[i * (i + 1) / 2 + j]
     };
-    for (column, out) in vector.iter_mut().enumerate() {
-        *out = (0..6).map(|row| map[row * m + column] * g[row]).sum();
-    }
     let mut at = 0;
     for a in 0..m {
         let mut product = [0.0; 6];

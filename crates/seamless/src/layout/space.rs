@@ -3,6 +3,7 @@
 use crate::cut::{Cut, SeamGraph};
 use crate::quarter::{turn, unit};
 use num_complex::Complex64;
+use rayon::prelude::*;
 use seamstress_surface::{Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
 use std::collections::BTreeMap;
 
@@ -79,13 +80,20 @@ impl LinearSpace {
 
     /// Wedge positions of the unknowns.
     pub fn expand(&self, y: &[f64]) -> Vec<Complex64> {
+        let mut z = vec![Complex64::ZERO; self.n_wedges()];
+        self.expand_into(y, &mut z);
+        z
+    }
+
+    /// The same, into a buffer of one position per wedge.
+    pub fn expand_into(&self, y: &[f64], z: &mut [Complex64]) {
         let coordinate = |row: usize| {
             let (columns, coefficients) = self.row(row);
             columns.iter().zip(coefficients).map(|(&j, c)| c * y[j as usize]).sum::<f64>()
         };
-        (0..self.n_wedges())
-            .map(|w| Complex64::new(coordinate(2 * w), coordinate(2 * w + 1)))
-            .collect()
+        z.par_iter_mut().with_min_len(8192).enumerate().for_each(|(w, z)| {
+            *z = Complex64::new(coordinate(2 * w), coordinate(2 * w + 1));
+        });
     }
 
     /// The unknowns of wedge positions in a space without seams, which is every wedge but the pinned one:

@@ -100,7 +100,7 @@ pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -
 }
 
 /// Smallest positive root of `a t^2 + b t + c`.
-fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
+pub(super) fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return f64::INFINITY;

@@ -1,0 +1,101 @@
+//! Two solvers for one program.
+
+use super::interior_point::{self, Renewal};
+use super::program::Program;
+use super::reference;
+use crate::layout::problem::LayoutProblem;
+use crate::progress::{Cancelled, Watch};
+
+/// A solver of [`Program`]s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// The interior point of this crate, which uses the structure of the programs.
+    #[default]
+    Own,
+    /// Clarabel, a general conic solver (Goulart and Chen 2024): the reference.
+    Clarabel,
+}
+
+/// When a solver stops.
+#[derive(Debug, Clone, Copy)]
+pub struct SolverOptions {
+    /// Gap between the objective and its bound from below, as a part of the objective.
+    pub tolerance: f64,
+    /// Most iterations.
+    pub max_iterations: usize,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-6, max_iterations: 100 }
+    }
+}
+
+/// How a solver ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Outcome {
+    /// To the tolerance.
+    Solved,
+    /// The iterations ran out.
+    IterationLimit,
+    /// The linear system was not positive definite to working precision.
+    LostDefiniteness,
+    /// Steps became too short.
+    Stalled,
+    /// The layout given is not inside the program's constraints, where the own solver starts.
+    NoInteriorStart,
+    /// The reference solver ended otherwise.
+    ReferenceFailed,
+}
+
+/// A layout that solves a program, or the best one reached.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct ConicSolution {
+    /// The unknowns.
+    pub y: Vec<f64>,
+    /// [`Program::value`] of them.
+    pub objective: f64,
+    /// Gap to the bound from below, as a part of the objective.
+    pub gap: f64,
+    /// Iterations of the solver used.
+    pub iterations: usize,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// The solver that found the unknowns.
+    pub solver_used: Solver,
+    /// How the own solver failed, where the reference took over.
+    pub fallback_from: Option<Outcome>,
+}
+
+/// Solves a program from a layout; Clarabel takes over where the own solver fails.
+///
+/// The own solver starts at `y`, which must satisfy the program's constraints (for some bound); a flip-free
+/// layout with its own frames does. Clarabel needs no start.
+///
+/// # Errors
+/// [`Cancelled`]. A failure of both solvers is told by [`ConicSolution::outcome`].
+pub fn solve(
+    problem: &mut LayoutProblem,
+    program: &Program,
+    y: &[f64],
+    solver: Solver,
+    options: &SolverOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<ConicSolution, Cancelled> {
+    if solver == Solver::Clarabel {
+        return reference::solve(problem, program, options, watch);
+    }
+    let own = interior_point::solve(problem, program, y, Renewal::Never, options, watch)?;
+    if own.outcome == Outcome::Solved {
+        return Ok(own);
+    }
+    let other = reference::solve(problem, program, options, watch)?;
+    if other.outcome == Outcome::Solved || other.objective < own.objective {
+        return Ok(ConicSolution { fallback_from: Some(own.outcome), ..other });
+    }
+    Ok(own)
+}
