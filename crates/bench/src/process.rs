@@ -15,8 +15,17 @@ pub fn cpu_seconds() -> Option<f64> {
 
 /// The largest memory in bytes since the start, or since [`forget_peak_memory`].
 pub fn peak_memory() -> Option<f64> {
+    status("VmHWM:")
+}
+
+/// The memory in bytes that is resident now.
+pub fn memory() -> Option<f64> {
+    status("VmRSS:")
+}
+
+fn status(field: &str) -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|l| l.strip_prefix(field))?;
     let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024.0)
 }

@@ -165,6 +165,11 @@ impl ExactLayout {
         &self.problem
     }
 
+    /// The problem behind it, to be solved.
+    pub fn problem_mut(&mut self) -> &mut LayoutProblem {
+        &mut self.problem
+    }
+
     /// Positions of the wedges for the unknowns.
     pub fn expand(&self, y: &[f64]) -> Vec<Complex64> {
         self.problem.space().expand(y)

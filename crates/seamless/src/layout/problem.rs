@@ -101,7 +101,7 @@ impl LayoutProblem {
 
     /// Assembles gradient and projected Hessian; returns the gradient in the unknowns.
     pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
-        self.fill_plain(|t, local, block| {
+        self.fill_triangles(|t, local, block| {
             let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
             for (k, g) in t.gradients.iter().enumerate() {
                 let d = hessian.gradient;
@@ -140,7 +140,7 @@ impl LayoutProblem {
 
     /// Assembles the Dirichlet form `sum of area |J|^2 / 2` of each coordinate.
     pub fn assemble_dirichlet(&mut self) {
-        self.fill_plain(|t, _, block| {
+        self.fill_triangles(|t, _, block| {
             let mut at = 0;
             for i in 0..6 {
                 for j in 0..=i {
@@ -205,7 +205,7 @@ impl LayoutProblem {
         vector: &mut [f64],
         local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,
     ) -> Vec<T> {
-        let tallies = self.fill_triangles(state, local);
+        let tallies = self.fill_with_state(state, local);
         self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
         self.assembly.sum_vector(&self.locals, vector);
         tallies
@@ -260,14 +260,14 @@ impl LayoutProblem {
     }
 
     /// Runs `local` on triangles without state.
-    fn fill_plain(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
+    fn fill_triangles(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
         let mut stateless = vec![(); self.triangles.len()];
-        self.fill_triangles(&mut stateless, |t, (), (): &mut (), l, b| local(t, l, b));
+        self.fill_with_state(&mut stateless, |t, (), (): &mut (), l, b| local(t, l, b));
     }
 
     /// Runs `local` on every triangle in the six corner coordinates and carries the results over to
     /// the element's unknowns.
-    fn fill_triangles<S: Send, T: Default + Send>(
+    fn fill_with_state<S: Send, T: Default + Send>(
         &mut self,
         state: &mut [S],
         local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,

@@ -24,12 +24,6 @@ fn size<const D: usize>(u: &[f64; D]) -> f64 {
     ((u[0] - tail) * (u[0] + tail)).sqrt()
 }
 
-/// Whether an element lies inside, off the boundary.
-#[inline]
-pub(super) fn is_inside<const D: usize>(u: &[f64; D]) -> bool {
-    u[0] > 0.0 && size(u) > 0.0
-}
-
 /// The Jordan product `(a . b, a0 b1 + b0 a1)`.
 #[inline]
 pub(super) fn product<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
@@ -161,10 +155,5 @@ mod tests {
         assert!((largest_step(&[2.0, 1.0, 0.0], &[0.0, 1.0, 0.0]) - 1.0).abs() < 1e-14);
         assert_eq!(largest_step(&U, &[1.0, 0.0, 0.5]), f64::INFINITY);
         assert!((largest_step(&[2.0, 1.0, 0.0], &[-1.0, 0.0, 0.0]) - 1.0).abs() < 1e-14);
-    }
-
-    #[test]
-    fn the_boundary_is_not_inside() {
-        assert!(is_inside(&U) && !is_inside(&[1.0, 1.0, 0.0]) && !is_inside(&[-2.0, 1.0, 0.0]));
     }
 }

@@ -16,6 +16,19 @@ impl Row {
         Self(vec![(column as u32, coefficient)])
     }
 
+    /// Every column with a coefficient other than zero.
+    pub(super) fn dense(coefficients: &[f64]) -> Self {
+        let columns = coefficients.iter().enumerate().filter(|(_, x)| **x != 0.0);
+        Self(columns.map(|(column, &x)| (column as u32, x)).collect())
+    }
+
+    /// Adds `factor` times the row to a dense one.
+    pub(super) fn add_to(&self, dense: &mut [f64], factor: f64) {
+        for &(column, x) in &self.0 {
+            dense[column as usize] += factor * x;
+        }
+    }
+
     fn collect(mut entries: Vec<(u32, f64)>) -> Self {
         entries.sort_unstable_by_key(|&(column, _)| column);
         entries.dedup_by(|next, kept| {

@@ -1,0 +1,34 @@
+//! Maps from files.
+
+use num_complex::Complex64;
+use seamstress::layout::exact::ExactLayout;
+use seamstress::{SeamlessMap, Tolerance};
+use seamstress_io::read_mesh;
+use seamstress_surface::{Metric, TriMesh};
+use std::error::Error;
+use std::path::Path;
+
+/// The exact layout of a map and its unknowns.
+pub(crate) struct Input {
+    pub(crate) layout: ExactLayout,
+    pub(crate) y: Vec<f64>,
+    pub(crate) z: Vec<Complex64>,
+}
+
+impl Input {
+    /// Reads and certifies a map, and opens its exact layout.
+    pub(crate) fn load(path: &Path) -> Result<Self, Box<dyn Error>> {
+        let read = read_mesh(path)?;
+        let uvs = read.corner_uvs.as_ref().ok_or("the file has no texture coordinates")?;
+        let uvs: Option<Vec<[f64; 2]>> =
+            uvs.corners.iter().map(|&k| uvs.coordinates.get(k as usize).copied()).collect();
+        let faces: Result<Vec<[u32; 3]>, _> =
+            read.polygons.iter().map(<[u32; 3]>::try_from).collect();
+        let mesh = TriMesh::from_faces(read.positions.len(), &faces?)?;
+        let metric = Metric::from_positions(&mesh, &read.positions);
+        let uvs = uvs.ok_or("a corner has no texture coordinates")?;
+        let map = SeamlessMap::certify(&mesh, uvs, &Tolerance::default())?;
+        let (layout, y) = ExactLayout::from_map(&mesh, &metric, &map)?;
+        Ok(Self { z: layout.expand(&y), layout, y })
+    }
+}

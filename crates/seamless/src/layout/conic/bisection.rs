@@ -1,0 +1,89 @@
+//! Bounded dilatation by bisection over the bound (Lipman 2012), to compare eq. (12) with.
+
+use super::ConicOptions;
+use super::descent::Descent;
+use super::objective::ConicObjective;
+use super::program::{Matrix2, Program};
+use super::reference::{End, run};
+use super::rows::{Row, Rows, part_rows};
+use super::solver::{ConicSolution, Outcome, Solver};
+use crate::layout::problem::LayoutProblem;
+use crate::progress::{Cancelled, Watch};
+use clarabel::solver::{SecondOrderConeT, ZeroConeT};
+
+/// Bisection ends when the bounds on K differ by less than this part.
+const BRACKET: f64 = 1e-3;
+
+/// Bisects for the least K with `|w| <= k Re(z conj R)`, `k = (K - 1) / (K + 1)`, then renews the frames,
+/// in turns.
+pub(super) fn bisect(
+    problem: &mut LayoutProblem,
+    left: Option<&[Matrix2]>,
+    descent: &mut Descent,
+    options: &ConicOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(), Cancelled> {
+    let objective = ConicObjective::DilatationBisection;
+    for _ in 0..options.max_rounds {
+        let before = descent.value;
+        // The program without scales: the bound does not depend on them.
+        let program = Program { scales: None, ..objective.program(problem, left, &descent.z) };
+        let (mut lowest, mut highest) = (1.0, descent.value);
+        while highest - lowest > BRACKET * lowest {
+            watch.pulse()?;
+            let bound = 0.5 * (lowest + highest);
+            let attempt = bounded(problem, &program, bound, options);
+            descent.record(&attempt);
+            if attempt.outcome == Outcome::Solved && attempt.objective <= 0.0 {
+                descent.move_to(problem, objective, left, &attempt.y);
+                highest = descent.value.min(bound);
+            } else {
+                lowest = bound;
+            }
+        }
+        if !(descent.value < before * (1.0 - options.tolerance)) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The layout of mean 1 of `Re(z conj R)` with the least violation t of `|w| <= k Re(z conj R) + t`; the bound
+/// on K can be kept if t is not positive. The objective of the solution is t.
+fn bounded(
+    problem: &LayoutProblem,
+    program: &Program,
+    bound: f64,
+    options: &ConicOptions,
+) -> ConicSolution {
+    let (n, triangles) = (problem.space().n_unknowns(), problem.triangles());
+    let k = (bound - 1.0) / (bound + 1.0);
+    let mut rows = Rows::new(n + 1);
+    let mut cones = Vec::with_capacity(triangles.len());
+    let mut mean = vec![0.0; n];
+    for (t, triangle) in triangles.iter().enumerate() {
+        let left = program.left.as_ref().map(|left| &left[t]);
+        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, 1.0, left);
+        let along = z0.times(program.frames[t].re).plus(&z1.times(program.frames[t].im));
+        along.add_to(&mut mean, triangle.weight);
+        rows.push(&along.times(k).plus(&Row::of(n, 1.0)), 0.0);
+        rows.push(&w0, 0.0);
+        rows.push(&w1, 0.0);
+        cones.push(SecondOrderConeT(3));
+    }
+    rows.push(&Row::dense(&mean), -1.0);
+    cones.push(ZeroConeT(1));
+    let mut cost = vec![0.0; n + 1];
+    cost[n] = 1.0;
+    let (x, End { gap, iterations, outcome }) =
+        run(&rows.into_csc(), &cost, &cones, &options.program);
+    ConicSolution {
+        y: x[..n].to_vec(),
+        objective: x[n],
+        gap,
+        iterations,
+        outcome,
+        solver_used: Solver::Clarabel,
+        fallback_from: None,
+    }
+}
