@@ -151,6 +151,9 @@ fn alone(
         .args(["--alone", &value(solver.to_possible_value())])
         .args(["--tolerance", &tolerance.to_string()])
         .env("RAYON_NUM_THREADS", "1")
+        // Freed blocks go back to the system (glibc), so that resident memory is what is in use.
+        .env("MALLOC_MMAP_THRESHOLD_", "65536")
+        .env("MALLOC_TRIM_THRESHOLD_", "65536")
         .output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     Measurement::from_line(text.trim()).ok_or_else(|| {

@@ -69,12 +69,9 @@ pub(crate) fn measure(
     // The own solver sets up ordering, analysis and factor: they count as its own.
     let (space, triangles) =
         (layout.problem().space().clone(), layout.problem().triangles().to_vec());
+    drop((layout, z));
+    forget_peak_memory();
     let mut before = (memory(), cpu_seconds());
-    if solver == Solver::Own {
-        drop((layout, z));
-        forget_peak_memory();
-        before = (memory(), cpu_seconds());
-    }
     let mut problem = LayoutProblem::new(space, triangles, None)?;
     if solver == Solver::Clarabel {
         forget_peak_memory();

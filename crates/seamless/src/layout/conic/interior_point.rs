@@ -32,8 +32,9 @@ const STEP_FRACTION: f64 = 0.99;
 const STEP_FRACTION_RENEWED: f64 = 0.95;
 /// Steps shorter than this lead nowhere.
 const SHORTEST_STEP: f64 = 1e-9;
-/// Relative raise of the diagonal, against rounding.
-const RAISE: f64 = 1e-13;
+/// Relative raises of the diagonal against rounding, one after the other until there is a factor. Steps stay
+/// directions of descent with the larger ones, and get shorter.
+const RAISES: [f64; 3] = [1e-13, 1e-11, 1e-9];
 /// Least centring parameter.
 const LEAST_CENTRING: f64 = 1e-8;
 /// Values below this count as this when a gap is compared to them: the optimum of (8) may be 0.
@@ -157,7 +158,8 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
             if end.iterations == options.max_iterations {
                 return Ok(Outcome::IterationLimit);
             }
-            if !now.gap.is_finite() || self.problem.factorize_as_is(RAISE).is_err() {
+            let raised = |&raise: &f64| self.problem.factorize_as_is(raise).is_ok();
+            if !(now.gap.is_finite() && RAISES.iter().any(raised)) {
                 return Ok(Outcome::LostDefiniteness);
             }
             if !self.step(&now) {

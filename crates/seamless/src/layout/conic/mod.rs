@@ -131,7 +131,13 @@ pub fn minimize(
         ConicObjective::DilatationBisection => {
             bisection::bisect(problem, left, &mut descent, options, watch)?;
         }
-        _ => alternate::alternate(problem, objective, left, &mut descent, options, watch)?,
+        _ => {
+            if std::env::var("FUSE").is_ok() {
+                fused::fused(problem, objective, left, &mut descent, options, watch)?;
+                eprintln!("fused {} it {} {:?}", descent.value, descent.iterations, descent.outcome);
+            }
+            alternate::alternate(problem, objective, left, &mut descent, options, watch)?
+        }
     }
     let bounded = matches!(objective, ConicObjective::ArapMax | ConicObjective::AsapMax);
     if objective != ConicObjective::ArapMax {
