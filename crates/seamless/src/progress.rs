@@ -1,6 +1,7 @@
 //! Progress and cancellation of long work.
 
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// The stages of making a map, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
@@ -81,6 +82,30 @@ impl<'a, 'b> Watch<'a, 'b> {
     /// [`Cancelled`] when the observer breaks.
     pub fn pulse(&mut self) -> Result<(), Cancelled> {
         self.tick(self.now.fraction)
+    }
+
+    /// Runs work that is to stop at a deadline, if there is one; `None` when the deadline cut it short.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the observer breaks.
+    pub fn limited<T>(
+        &mut self,
+        deadline: Option<Instant>,
+        work: impl FnOnce(&mut Watch<'_, '_>) -> Result<T, Cancelled>,
+    ) -> Result<Option<T>, Cancelled> {
+        let Some(deadline) = deadline else {
+            return work(self).map(Some);
+        };
+        let (mut expired, observer, now) = (false, &mut *self.observer, self.now);
+        let mut guarded = |progress| {
+            expired = Instant::now() >= deadline;
+            if expired { ControlFlow::Break(()) } else { observer(progress) }
+        };
+        let outcome = work(&mut Watch { observer: &mut guarded, now });
+        match outcome {
+            Err(Cancelled) if expired => Ok(None),
+            outcome => outcome.map(Some),
+        }
     }
 
     /// Reports the share of the stage that is done.

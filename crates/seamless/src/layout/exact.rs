@@ -2,6 +2,7 @@
 
 use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
+use super::conic::program::extremes;
 use super::energy::Energy;
 use super::homotopy::angle_sums;
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
@@ -276,6 +277,12 @@ impl ExactLayout {
                 smallest: m.smallest.min(s2),
             }
         })
+    }
+
+    /// The largest first and the smallest second singular value.
+    pub fn extreme_singular_values(&self, y: &[f64]) -> (f64, f64) {
+        let z = self.expand(y);
+        extremes(self.problem.triangles(), |_, t| t.jacobian(&z).singular_values())
     }
 
     /// Lists flips and wrong angles.

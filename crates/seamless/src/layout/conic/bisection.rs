@@ -1,12 +1,11 @@
 //! Bounded dilatation by bisection over the bound (Lipman 2012), to compare eq. (12) with.
 
-use super::ConicOptions;
-use super::descent::Descent;
 use super::objective::ConicObjective;
-use super::program::{Matrix2, Program};
+use super::program::Program;
 use super::reference::{End, run};
 use super::rows::{Row, Rows, part_rows};
 use super::solver::{ConicSolution, Outcome, Solver};
+use super::{ConicOptions, Run};
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
 use clarabel::solver::{SecondOrderConeT, ZeroConeT};
@@ -14,38 +13,33 @@ use clarabel::solver::{SecondOrderConeT, ZeroConeT};
 /// Bisection ends when the bounds on K differ by less than this part.
 const BRACKET: f64 = 1e-3;
 
-/// Bisects for the least K with `|w| <= k Re(z conj R)`, `k = (K - 1) / (K + 1)`, then renews the frames,
-/// in turns.
-pub(super) fn bisect(
-    problem: &mut LayoutProblem,
-    left: Option<&[Matrix2]>,
-    descent: &mut Descent,
-    options: &ConicOptions,
-    watch: &mut Watch<'_, '_>,
-) -> Result<(), Cancelled> {
-    let objective = ConicObjective::DilatationBisection;
-    for _ in 0..options.max_rounds {
-        let before = descent.value;
-        // The program without scales: the bound does not depend on them.
-        let program = Program { scales: None, ..objective.program(problem, left, &descent.z) };
-        let (mut lowest, mut highest) = (1.0, descent.value);
-        while highest - lowest > BRACKET * lowest {
-            watch.pulse()?;
-            let bound = 0.5 * (lowest + highest);
-            let attempt = bounded(problem, &program, bound, options);
-            descent.record(&attempt);
-            if attempt.outcome == Outcome::Solved && attempt.objective <= 0.0 {
-                descent.move_to(problem, objective, left, &attempt.y);
-                highest = descent.value.min(bound);
-            } else {
-                lowest = bound;
+impl Run<'_> {
+    /// Bisects for the least K with `|w| <= k Re(z conj R)`, `k = (K - 1) / (K + 1)`, then renews the frames,
+    /// in turns.
+    pub(super) fn bisect(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
+        let objective = ConicObjective::DilatationBisection;
+        for _ in 0..self.options.max_rounds {
+            let before = self.descent.value;
+            let program = objective.program(self.problem, self.left, &self.descent.z);
+            let (mut lowest, mut highest) = (1.0, self.descent.value);
+            while highest - lowest > BRACKET * lowest {
+                watch.pulse()?;
+                let bound = 0.5 * (lowest + highest);
+                let attempt = bounded(self.problem, &program, bound, self.options);
+                self.descent.record(&attempt);
+                if attempt.outcome == Outcome::Solved && attempt.objective <= 0.0 {
+                    self.descent.move_to(self.problem, objective, self.left, &attempt.y);
+                    highest = self.descent.value.min(bound);
+                } else {
+                    lowest = bound;
+                }
+            }
+            if self.descent.value >= before * (1.0 - self.options.tolerance) {
+                break;
             }
         }
-        if !(descent.value < before * (1.0 - options.tolerance)) {
-            break;
-        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// The layout of mean 1 of `Re(z conj R)` with the least violation t of `|w| <= k Re(z conj R) + t`; the bound

@@ -101,9 +101,10 @@ pub struct ConicMinimum {
 
 /// Minimises a maximal distortion over the layouts of a space, from a flip-free one.
 ///
-/// The result has no flips, and is never worse than the start. All but [`ConicObjective::Tau`] are
-/// local/global methods whose every global step is a convex program; none is guaranteed to find the
-/// global minimum.
+/// The result has no flips, and is never worse than the start. The methods named after alternation do local
+/// and global steps alone, as printed; the others start with one interior-point run in which the local step
+/// is done in every iteration (with the own solver), which takes most rounds' place. None is guaranteed to
+/// find the global minimum.
 ///
 /// # Errors
 /// [`ConicError`].
@@ -116,29 +117,27 @@ pub fn minimize(
 ) -> Result<ConicMinimum, ConicError> {
     let left = inverses(problem, options)?;
     let left = left.as_deref();
-    let mut descent = Descent::new(problem, objective, left, y);
+    let descent = Descent::new(problem, objective, left, y);
     if let Some(triangle) = descent::first_flip(problem, &descent.z) {
         return Err(ConicError::FlippedStart { triangle });
     }
     let value_before = descent.value;
+    let mut run = Run { problem, left, options, descent };
     match objective {
-        ConicObjective::Tau => {
-            if options.solver == Solver::Own {
-                fused::fused(problem, objective, left, &mut descent, options, watch)?;
-            }
-            alternate::alternate(problem, objective, left, &mut descent, options, watch)?;
+        ConicObjective::DilatationBisection => run.bisect(watch)?,
+        ConicObjective::TauAlternating | ConicObjective::DilatationAlternating => {
+            run.alternate(objective, watch)?;
         }
-        ConicObjective::DilatationBisection => {
-            bisection::bisect(problem, left, &mut descent, options, watch)?;
+        ConicObjective::Dilatation => {
+            // (11) has the same minimisers and gets stuck less: at a fixed point of (12) no triangle of
+            // largest dilatation may change its size.
+            run.fused_and_alternate(ConicObjective::AsapMax, watch)?;
+            run.restart(objective);
+            run.fused_and_alternate(objective, watch)?;
         }
-        _ => {
-            if std::env::var("FUSE").is_ok() {
-                fused::fused(problem, objective, left, &mut descent, options, watch)?;
-                eprintln!("fused {} it {} {:?}", descent.value, descent.iterations, descent.outcome);
-            }
-            alternate::alternate(problem, objective, left, &mut descent, options, watch)?
-        }
+        _ => run.fused_and_alternate(objective, watch)?,
     }
+    let Run { problem, mut descent, .. } = run;
     let bounded = matches!(objective, ConicObjective::ArapMax | ConicObjective::AsapMax);
     if objective != ConicObjective::ArapMax {
         normalize(problem, &mut descent);
@@ -154,6 +153,32 @@ pub fn minimize(
         fallback_from: descent.fallback_from,
         y: descent.y,
     })
+}
+
+/// A minimisation on its way.
+struct Run<'a> {
+    problem: &'a mut LayoutProblem,
+    left: Option<&'a [Matrix2]>,
+    options: &'a ConicOptions,
+    descent: Descent,
+}
+
+impl Run<'_> {
+    fn fused_and_alternate(
+        &mut self,
+        objective: ConicObjective,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(), Cancelled> {
+        if self.options.solver == Solver::Own {
+            self.fused(objective, watch)?;
+        }
+        self.alternate(objective, watch)
+    }
+
+    /// Goes on from the layout reached with another measure.
+    fn restart(&mut self, objective: ConicObjective) {
+        self.descent.value = objective.value(self.problem, self.left, &self.descent.z);
+    }
 }
 
 /// Scales a layout to `sigma_1 max sigma_2 min = 1`, eq. (2) for the whole mesh.

@@ -13,17 +13,19 @@ use rayon::prelude::*;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ConicObjective {
-    /// tau, eq. (3), with frames renewed inside the interior point, then by Algorithm 1.
+    /// tau, eq. (3), by eq. (9).
     Tau,
-    /// tau by Algorithm 1 as printed: (9) for given frames, then frames by polar decomposition, in turns.
+    /// The same by Algorithm 1 as printed: (9) for given frames, then frames by polar decomposition, in turns.
     TauAlternating,
-    /// The largest `|J - R|_F^2`, eq. (8), by local and global steps.
+    /// The largest `|J - R|_F^2`, eq. (8).
     ArapMax,
-    /// The largest `|J / s - R|_F^2`, eq. (11), by local and global steps.
+    /// The largest `|J / s - R|_F^2`, eq. (11).
     AsapMax,
-    /// The largest dilatation `sigma_1 / sigma_2` by local and global steps with scales, eq. (12).
+    /// The largest dilatation `sigma_1 / sigma_2`, by eq. (11) and (12).
     Dilatation,
-    /// The largest dilatation by bisection over bounds on it (Lipman 2012), frames renewed in between.
+    /// The same by eq. (12) alone, as printed.
+    DilatationAlternating,
+    /// The same by bisection over bounds (Lipman 2012), frames renewed in between.
     DilatationBisection,
 }
 
@@ -36,8 +38,8 @@ impl ConicObjective {
             Self::Tau | Self::TauAlternating => return (s1, s2),
             Self::ArapMax => (s1 - 1.0).powi(2) + (s2 - 1.0).powi(2),
             Self::AsapMax => (s1 - s2).powi(2) / (s1 * s1 + s2 * s2),
-            Self::Dilatation | Self::DilatationBisection if s2 > 0.0 => s1 / s2,
-            Self::Dilatation | Self::DilatationBisection => f64::INFINITY,
+            _ if s2 > 0.0 => s1 / s2,
+            _ => f64::INFINITY,
         };
         (figure, f64::INFINITY)
     }
@@ -85,7 +87,7 @@ impl ConicObjective {
                 // 1 / s at the minimum of (11) over s
                 Self::AsapMax => scales(|s1, s2| (s1 + s2) / (s1 * s1 + s2 * s2)),
                 // eq. (2)
-                Self::Dilatation | Self::DilatationBisection => {
+                Self::Dilatation | Self::DilatationAlternating => {
                     scales(|s1, s2| 1.0 / (s1 * s2).sqrt())
                 }
                 _ => None,

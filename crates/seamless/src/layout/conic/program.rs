@@ -70,7 +70,7 @@ impl Program {
 }
 
 /// The largest first and the smallest second figure of all triangles.
-pub(super) fn extremes(
+pub(in crate::layout) fn extremes(
     triangles: &[Triangle],
     figures: impl Fn(usize, &Triangle) -> (f64, f64) + Sync,
 ) -> (f64, f64) {
