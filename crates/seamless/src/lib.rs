@@ -18,6 +18,7 @@ pub mod quarter;
 pub mod rounding;
 
 pub use features::{ReleaseReason, ReleasedFeature, Sectors};
+pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,

@@ -12,10 +12,12 @@ pub enum Stage {
     Cut,
     /// Rounding the matchings.
     Rounding,
-    /// The exact seamless layout and its polish.
+    /// The exact seamless layout of low energy.
     Layout,
     /// Removing and moving cones.
     CleanUp,
+    /// Lowering the largest distortion.
+    Polish,
     /// Certifying.
     Certificate,
 }
@@ -28,6 +30,7 @@ impl Stage {
             Stage::Rounding => "rounding",
             Stage::Layout => "layout",
             Stage::CleanUp => "clean-up",
+            Stage::Polish => "polish",
             Stage::Certificate => "certificate",
         }
     }

@@ -1,9 +1,10 @@
 //! Arguments of `map`.
 
-use super::{EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative};
-use seamstress::MapOptions;
+use super::{EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, seconds};
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
+use seamstress::{MapOptions, PolishOptions};
 use std::path::PathBuf;
+use std::time::Duration;
 
 const MAP_EXAMPLES: &str = "\
 Examples:
@@ -95,6 +96,24 @@ pub(crate) struct MapArgs {
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
     pub(crate) rounding: Rounding,
 
+    /// Leave out the finish that lowers the largest distortion (tau)
+    #[arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"])]
+    pub(crate) no_tau_polish: bool,
+
+    /// Stop that finish after this many seconds; the map then depends on the machine [default: no
+    /// limit]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) polish_time: Option<Duration>,
+
+    /// By how much of itself that finish may raise the mean symmetric Dirichlet energy
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = PolishOptions::default().max_energy_rise
+    )]
+    pub(crate) max_energy_rise: f64,
+
     #[command(flatten)]
     pub(crate) texture: TextureArgs,
 
@@ -123,6 +142,10 @@ impl MapArgs {
         };
         options.cone_price = self.cone_price;
         options.strict_features = self.features_strict;
+        options.polish = (!self.no_tau_polish).then_some(PolishOptions {
+            max_energy_rise: self.max_energy_rise,
+            time_limit: self.polish_time,
+        });
         options
     }
 }

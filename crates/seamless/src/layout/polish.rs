@@ -40,11 +40,14 @@ const BOUNDS: usize = 5;
 const ENOUGH: f64 = 0.9;
 /// The rise falls about as this power of the bound; only the second bound tried rests on it.
 const DECAY: f64 = 15.0;
-/// Barrier weight, in units of the energy: a tenth of usual excesses, so that few Newton steps do.
+/// Barrier weight, in units of the energy: a tenth of usual excesses over 4, so that few Newton steps do.
 const WEIGHT: f64 = 1e-2;
 const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 12, tolerance: 1e-5 };
-/// Parts of the way to the relaxed layout where a minimisation may start.
-const STARTS: [f64; 5] = [0.8, 0.6, 0.4, 0.2, 0.1];
+/// Factors of the least tau below which no more energy is spent.
+const NEAR_ENOUGH: f64 = 1.01;
+const HALVINGS: usize = 10;
+/// Parts of the way to a layout of low energy where a minimisation may start.
+const STARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0];
 /// How near the bounds of a window a start may lie, as a part of its logarithmic width.
 const ROOM: f64 = 0.02;
 
@@ -77,7 +80,9 @@ pub fn polish(
     let Some(tightest) = tightest.flatten() else { return Ok(None) };
     let iterations = tightest.iterations;
     let mut search = Search::new(layout, relaxed, start, tightest.y, options, iterations);
-    watch.limited(deadline, |watch| search.run(watch))?;
+    if watch.limited(deadline, |watch| search.run(watch))?.is_some() {
+        search.spend_the_rest();
+    }
     let Search { best, iterations, improved, .. } = search;
     Ok(improved.then_some(Polished { y: best, iterations }))
 }
@@ -86,6 +91,7 @@ pub fn polish(
 struct Search<'a> {
     layout: &'a mut ExactLayout,
     relaxed: &'a [f64],
+    start: &'a [f64],
     /// Energy of the relaxed layout, and its rise that is allowed.
     energy: f64,
     allowed: f64,
@@ -105,7 +111,7 @@ impl<'a> Search<'a> {
     fn new(
         layout: &'a mut ExactLayout,
         relaxed: &'a [f64],
-        start: &[f64],
+        start: &'a [f64],
         mut tightest: Vec<f64>,
         options: &PolishOptions,
         iterations: usize,
@@ -123,6 +129,7 @@ impl<'a> Search<'a> {
             tightest,
             layout,
             relaxed,
+            start,
             improved: false,
             iterations,
         }
@@ -167,29 +174,59 @@ impl<'a> Search<'a> {
         let start = self.start_within(&window);
         let solution = self.layout.minimize(start, &window, &SETTLE, watch)?;
         self.iterations += solution.iterations;
-        let (energy, tau) = self.layout.distortion(&solution.y);
-        let rise = energy - self.energy;
-        if rise <= self.allowed && tau < self.best_tau {
-            self.best.clone_from(&solution.y);
-            (self.best_tau, self.improved) = (tau, true);
-        }
+        let rise = self.consider(&solution.y);
         self.last = solution.y;
         Ok(rise)
     }
 
-    /// A point in the window, near the relaxed layout on the way there from the last one (or from the one of
-    /// least tau, which lies in all windows).
+    /// Takes a layout if it is better than the best; returns the rise of its energy.
+    fn consider(&mut self, y: &[f64]) -> f64 {
+        let (energy, tau) = self.layout.distortion(y);
+        let rise = energy - self.energy;
+        if rise <= self.allowed && tau < self.best_tau {
+            self.best = y.to_vec();
+            (self.best_tau, self.improved) = (tau, true);
+        }
+        rise
+    }
+
+    /// Where windows have left tau well above the least one: goes straight towards that one, as far as the
+    /// energy allows.
+    fn spend_the_rest(&mut self) {
+        if self.best_tau <= NEAR_ENOUGH * self.tau {
+            return;
+        }
+        let from = self.best.clone();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let part = 0.5 * (low + high);
+            let between = from.iter().zip(&self.tightest).map(|(y, t)| y + part * (t - y));
+            let y: Vec<f64> = between.collect();
+            if self.consider(&y) <= self.allowed { low = part } else { high = part }
+        }
+    }
+
+    /// A point in the window to start from: of those far along straight ways from layouts of low tau to layouts
+    /// of low energy, the one of least energy.
     fn start_within(&self, window: &Window) -> Vec<f64> {
         let inside = |y: &[f64], margin: f64| {
             let (largest, smallest) = self.layout.extreme_singular_values(y);
             largest * margin < window.highest && smallest > window.lowest * margin
         };
-        let from = if inside(&self.last, 1.0) { &self.last } else { &self.tightest };
-        let between = |part: f64| -> Vec<f64> {
-            from.iter().zip(self.relaxed).map(|(y, r)| y + part * (r - y)).collect()
-        };
         let margin = (window.highest / window.lowest).powf(ROOM);
-        let nearer = STARTS.into_iter().map(between).find(|y| inside(y, margin));
-        nearer.unwrap_or_else(|| from.clone())
+        let mut found = (f64::INFINITY, self.tightest.clone());
+        for from in [&self.tightest, &self.last] {
+            for to in [self.relaxed, self.start] {
+                let between = |part: f64| -> Vec<f64> {
+                    from.iter().zip(to).map(|(y, r)| y + part * (r - y)).collect()
+                };
+                let farthest = STARTS.into_iter().map(between).find(|y| inside(y, margin));
+                let energy = |y: &Vec<f64>| self.layout.distortion(y).0;
+                if let Some(y) = farthest.filter(|y| energy(y) < found.0) {
+                    found = (energy(&y), y);
+                }
+            }
+        }
+        found.1
     }
 }

@@ -131,6 +131,12 @@ fn solve(
         clock.lap(Stage::CleanUp, iterations);
     }
 
+    if let Some(polish) = &options.polish {
+        watch.enter(Stage::Polish)?;
+        let iterations = finished.polish(polish, watch)?;
+        clock.lap(Stage::Polish, iterations);
+    }
+
     let mut laid = finished.laid;
     let mut candidates = vec![corner_uvs(mesh, plain, &laid.layout, &laid.y)];
     if exponent < 1.0 {

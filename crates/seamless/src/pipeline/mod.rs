@@ -12,6 +12,7 @@ pub use start::Start;
 use crate::features::ReleasedFeature;
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
+use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
 use crate::progress::{Cancelled, Observer, Stage, Watch};
@@ -33,6 +34,8 @@ pub struct MapOptions {
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`]) rather than a
     /// line in the result.
     pub strict_features: bool,
+    /// The finish that lowers tau. None: growing powers of the energy alone, as clean-up is judged by.
+    pub polish: Option<PolishOptions>,
     /// Tolerance of the certificate.
     pub tolerance: Tolerance,
 }
@@ -43,6 +46,7 @@ impl Default for MapOptions {
             rounding: RoundingOptions::default(),
             cone_price: 0.0006,
             strict_features: false,
+            polish: Some(PolishOptions::default()),
             tolerance: Tolerance::default(),
         }
     }
