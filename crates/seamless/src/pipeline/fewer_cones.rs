@@ -22,10 +22,14 @@ pub(super) fn fewer_cones(
     price: f64,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Finished, usize), LayoutError> {
-    // The surrogate is less reliable between features, so many of its proposals fail there.
-    let effort = if sectors.any_aligned() { Effort::Brief } else { Effort::Thorough };
+    // The surrogate is less reliable between features, so bolder proposals mostly fail there.
+    let (bounds, effort) = if sectors.any_aligned() {
+        (&SCALE_BOUNDS[1..], Effort::Brief)
+    } else {
+        (&SCALE_BOUNDS[..], Effort::Thorough)
+    };
     let mut iterations = 0;
-    for largest_scale in SCALE_BOUNDS {
+    for &largest_scale in bounds {
         let mut cleaned = before.laid.matched.clone();
         let options = CleanUpOptions { price, largest_scale };
         let (stats, gauge) = match clean_up(sectors, metric, &mut cleaned, &options, watch) {

@@ -46,7 +46,7 @@ impl Default for RoundingOptions {
         Self {
             strategy: RoundingStrategy::default(),
             cone_bias: 0.5,
-            corner_weight: 0.5,
+            corner_weight: 1.0,
             rounds: 60,
             layout_iterations: 8,
         }
