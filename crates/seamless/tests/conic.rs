@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{surface, unwatched};
+use common::{collection, surface, unwatched};
 use num_complex::Complex64;
 use seamstress::layout::conic::{
     ConicError, ConicMinimum, ConicObjective, ConicOptions, Outcome, Program, Solver,
@@ -161,33 +161,37 @@ fn developable_strips_have_no_distortion() {
     assert!(minimum(&mut layout, &y, ConicObjective::ArapMax).value < 1e-5);
 }
 
+/// Own solver and Clarabel on every program of a map's own frames and scales.
+fn assert_agreement(soup: &TriangleSoup) {
+    let (mut layout, y) = mapped(soup);
+    for objective in MEASURES {
+        let program = program(&layout, objective, &y);
+        let mut by = |solver, tolerance| {
+            let problem = layout.problem_mut();
+            let options = SolverOptions { tolerance, ..SolverOptions::default() };
+            unwatched(|watch| solve(problem, &program, &y, solver, &options, watch)).unwrap()
+        };
+        let (own, other) = (by(Solver::Own, 1e-6), by(Solver::Clarabel, 1e-8));
+        assert_eq!((own.solver_used, own.fallback_from), (Solver::Own, None));
+        assert_eq!((own.outcome, other.solver_used), (Outcome::Solved, Solver::Clarabel));
+        // A layout without distortion has the optimum 0.
+        let difference = (own.objective - other.objective).abs();
+        let allowed = 1e-4 * other.objective + 1e-8;
+        assert!(difference < allowed, "{objective:?}: {} {}", own.objective, other.objective);
+    }
+}
+
 #[test]
 fn solvers_agree() {
-    let options = SolverOptions { tolerance: 1e-8, max_iterations: 100 };
-    for soup in shapes() {
-        let (mut layout, y) = mapped(&soup);
-        for objective in MEASURES {
-            let program = program(&layout, objective, &y);
-            let mut by = |solver| {
-                let problem = layout.problem_mut();
-                let options = match solver {
-                    Solver::Own => SolverOptions::default(),
-                    Solver::Clarabel => options,
-                };
-                unwatched(|watch| solve(problem, &program, &y, solver, &options, watch)).unwrap()
-            };
-            let (own, other) = (by(Solver::Own), by(Solver::Clarabel));
-            assert_eq!(own.solver_used, Solver::Own);
-            assert_eq!((own.outcome, own.fallback_from), (Outcome::Solved, None));
-            assert_eq!(other.solver_used, Solver::Clarabel);
-            // A layout without distortion has the optimum 0.
-            let difference = (own.objective - other.objective).abs();
-            assert!(
-                difference < 1e-4 * other.objective + 1e-8,
-                "{objective:?}: {} {}",
-                own.objective,
-                other.objective
-            );
+    shapes().iter().for_each(assert_agreement);
+}
+
+#[test]
+fn solvers_agree_on_real_meshes() {
+    let Some(folder) = collection::folder() else { return };
+    for file in ["decimated_knight.off", "chipped_torus.obj", "rocker_arm_2500.obj"] {
+        if let Some(soup) = collection::read(&folder, file) {
+            assert_agreement(&soup);
         }
     }
 }

@@ -1,13 +1,9 @@
 //! Real meshes against their topology and bounds on distortion, if a collection of them is there.
-//!
-//! The collection is the folder `SEAMSTRESS_MESHES`, by default `../shared/meshes` beside the workspace.
-#![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
 mod common;
 
-use common::mapped;
-use seamstress_surface::soup::{TriangleSoup, triangulate};
-use std::path::{Path, PathBuf};
+use common::{collection, mapped};
+use seamstress_surface::soup::TriangleSoup;
 
 /// What a mesh must come to.
 struct Golden {
@@ -52,21 +48,9 @@ const CASES: [Golden; 15] = [
     golden("eight.off", 11092, (1, 2, 0), 1.48, 4.06, 36),
 ];
 
-fn folder() -> PathBuf {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    std::env::var_os("SEAMSTRESS_MESHES").map_or_else(default, PathBuf::from)
-}
-
-fn read(path: &Path) -> TriangleSoup {
-    let mesh = seamstress_io::read_mesh(path).unwrap();
-    let faces = triangulate(&mesh.positions, mesh.polygons.iter()).unwrap().faces;
-    TriangleSoup { positions: mesh.positions, faces }
-}
-
-fn run(case: &Golden, path: &Path) {
-    let soup = read(path);
+fn run(case: &Golden, soup: &TriangleSoup) {
     assert_eq!(soup.faces.len(), case.faces);
-    let solution = mapped(&soup);
+    let solution = mapped(soup);
     let genus = solution.components.iter().map(|c| c.genus).sum::<i64>();
     let loops = solution.components.iter().map(|c| c.boundary_loops).sum::<usize>();
     assert_eq!((solution.components.len(), genus, loops), case.topology);
@@ -82,20 +66,12 @@ fn run(case: &Golden, path: &Path) {
 
 #[test]
 fn real_meshes_have_good_maps() {
-    let folder = folder();
-    if !folder.is_dir() {
-        println!("skipped: no mesh collection in {}", folder.display());
-        return;
-    }
+    let Some(folder) = collection::folder() else { return };
     let mut ran = 0;
     for case in &CASES {
-        let path = folder.join(case.file);
-        if !path.is_file() {
-            println!("skipped: no {}", case.file);
-            continue;
-        }
+        let Some(soup) = collection::read(&folder, case.file) else { continue };
         println!("{}", case.file);
-        run(case, &path);
+        run(case, &soup);
         ran += 1;
     }
     assert!(ran > 0, "{} holds none of the meshes", folder.display());

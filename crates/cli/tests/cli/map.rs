@@ -118,6 +118,29 @@ fn the_bytes_depend_on_nothing_but_the_input() {
 }
 
 #[test]
+fn the_finish_lowers_tau_and_can_be_left_out() {
+    let folder = Folder::new();
+    folder.write("in.off", off(&testkit::bumpy(&testkit::icosphere(3), 0.1, 5)));
+    let distortion = |options: &[&str]| {
+        let mut arguments = vec!["map", "in.off", "-o", "map.obj", "--json"];
+        arguments.extend(options);
+        let report: Value = serde_json::from_str(&folder.expect(0, &arguments).stdout).unwrap();
+        let figure = |name: &str| report["distortion"][name].as_f64().unwrap();
+        (figure("tau"), figure("symmetric_dirichlet"))
+    };
+    let (plain, polished) = (distortion(&["--no-tau-polish"]), distortion(&[]));
+    assert!(polished.0 < plain.0, "{polished:?} {plain:?}");
+    // The least energy is at most that of the plain map.
+    assert!(polished.1 <= 1.003 * plain.1);
+    let generous = distortion(&["--max-energy-rise", "0.05"]);
+    assert!(generous.0 <= polished.0);
+    // No time at all is the plain map.
+    assert_eq!(distortion(&["--polish-time", "1e-9"]), plain);
+    let both = ["map", "in.off", "-o", "map.obj", "--no-tau-polish", "--polish-time", "1"];
+    folder.expect(2, &both);
+}
+
+#[test]
 fn quiet_is_quiet() {
     let folder = Folder::new();
     folder.write("in.obj", format!("vn 0 0 1\n{}", obj(&testkit::cube())));

@@ -7,6 +7,7 @@
 )]
 
 pub(crate) mod checker;
+pub(crate) mod collection;
 
 use checker::Found;
 use seamstress::Sectors;

@@ -71,8 +71,7 @@ pub(super) fn block_back(
         let v = to_entries(row);
         left.map_or(v, |left| turn_back(left, &v))
     });
-    // h[i] is column i over the entries
-    let columns: [[f64; 4]; 4] = std::array::from_fn(|i| {
+    let over_entries: [[f64; 4]; 4] = std::array::from_fn(|i| {
         let v = to_entries(&std::array::from_fn(|a| square * rows[a][i]));
         left.map_or(v, |left| turn_back(left, &v))
     });
@@ -81,7 +80,7 @@ pub(super) fn block_back(
     let pair = |g: [f64; 2], h: [f64; 2]| -> Matrix2 {
         std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                let entry = |c: usize, d: usize| columns[2 * i + c][2 * j + d];
+                let entry = |c: usize, d: usize| over_entries[2 * i + c][2 * j + d];
                 g[0] * (entry(0, 0) * h[0] + entry(0, 1) * h[1])
                     + g[1] * (entry(1, 0) * h[0] + entry(1, 1) * h[1])
             })
