@@ -9,6 +9,7 @@
 pub mod cut;
 pub mod features;
 pub mod field;
+pub mod integer;
 pub mod layout;
 pub mod map;
 mod pipeline;
@@ -19,6 +20,10 @@ pub mod rounding;
 
 pub use features::{ReleaseReason, ReleasedFeature, Sectors};
 pub use layout::polish::PolishOptions;
+pub use integer::{
+    GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
+    to_integer_map,
+};
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,

@@ -20,6 +20,8 @@ pub enum Stage {
     Polish,
     /// Certifying.
     Certificate,
+    /// Rounding to an integer map.
+    Integers,
 }
 
 impl Stage {
@@ -32,6 +34,7 @@ impl Stage {
             Stage::CleanUp => "clean-up",
             Stage::Polish => "polish",
             Stage::Certificate => "certificate",
+            Stage::Integers => "integers",
         }
     }
 }

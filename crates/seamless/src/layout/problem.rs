@@ -8,7 +8,7 @@ use crate::cut::Cut;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use seamstress_numerics::ordering::{Graph, nested_dissection};
-use seamstress_numerics::{Assembly, Buckets, Cholesky, NotPositiveDefinite};
+use seamstress_numerics::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_surface::{Metric, TriMesh};
 use std::ops::Range;
 
@@ -31,8 +31,35 @@ pub struct LayoutProblem {
     blocks: Vec<f64>,
     locals: Vec<f64>,
     matrix: Vec<f64>,
+    /// The block of the matrix that is factored, when the last unknowns are held.
+    leading: Option<LeadingBlock>,
     /// Soft seams, only with a free space.
     pub penalty: Option<SeamPenalty>,
+}
+
+/// The leading block of a matrix: a pattern of its own, and where its entries lie in the whole.
+struct LeadingBlock {
+    pattern: Pattern,
+    slots: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl LeadingBlock {
+    fn new(whole: &Pattern, order: usize) -> Self {
+        let mut pattern = Pattern { column_offsets: vec![0], rows: Vec::new() };
+        let mut slots = Vec::new();
+        for column in 0..order {
+            for slot in whole.column_offsets[column]..whole.column_offsets[column + 1] {
+                let row = whole.rows[slot as usize];
+                if (row as usize) < order {
+                    pattern.rows.push(row);
+                    slots.push(slot);
+                }
+            }
+            pattern.column_offsets.push(pattern.rows.len() as u32);
+        }
+        Self { values: vec![0.0; slots.len()], pattern, slots }
+    }
 }
 
 impl LayoutProblem {
@@ -62,8 +89,53 @@ impl LayoutProblem {
             maps,
             assembly,
             cholesky,
+            leading: None,
             penalty,
         })
+    }
+
+    /// A problem in which the unknowns from `n_free` on (an even number) are held where they are: the
+    /// matrix and gradient are of all unknowns, solves move the first ones only.
+    ///
+    /// # Errors
+    /// As [`LayoutProblem::new`].
+    pub fn with_held(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        n_free: usize,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let (maps, elements): (Vec<_>, Vec<_>) =
+            triangles.iter().map(|t| element_map(&space, t)).unzip();
+        let free = |unknowns: &Vec<u32>| {
+            unknowns.iter().copied().filter(|&k| (k as usize) < n_free).collect::<Vec<u32>>()
+        };
+        let free: Vec<Vec<u32>> = elements.iter().map(free).collect();
+        let order = order_by_nodes(&space.nodes()[..n_free], &free);
+        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
+        let leading = LeadingBlock::new(assembly.pattern(), n_free);
+        let cholesky = Cholesky::analyze(&leading.pattern, &order)?;
+        Ok(Self {
+            blocks: vec![0.0; assembly.blocks_len()],
+            locals: vec![0.0; assembly.locals_len()],
+            matrix: vec![0.0; assembly.pattern().len()],
+            space,
+            triangles,
+            maps,
+            assembly,
+            cholesky,
+            leading: Some(leading),
+            penalty: None,
+        })
+    }
+
+    /// Number of unknowns that solves move.
+    pub fn n_free(&self) -> usize {
+        self.leading.as_ref().map_or(self.space.n_unknowns(), |block| block.pattern.order())
+    }
+
+    /// Pattern and values of the assembled matrix, held unknowns included (lower triangle).
+    pub fn matrix(&self) -> (&Pattern, &[f64]) {
+        (self.assembly.pattern(), &self.matrix)
     }
 
     /// The space of the unknowns.
@@ -154,21 +226,30 @@ impl LayoutProblem {
         self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
     }
 
-    /// Factors the assembled matrix, shifted by a fraction of its mean diagonal that grows until it is
-    /// positive definite.
+    /// Factors the assembled matrix (of the unknowns that are not held), shifted by a fraction of its
+    /// mean diagonal that grows until it is positive definite.
     ///
     /// # Errors
     /// When no reasonable shift helps (values that are not finite).
     pub fn factorize(&mut self, shift: f64) -> Result<(), NotPositiveDefinite> {
-        let diagonal = self.assembly.pattern().diagonal();
-        let mean = diagonal.iter().map(|&k| self.matrix[k as usize]).sum::<f64>()
-            / diagonal.len().max(1) as f64;
+        let (pattern, values) = match &mut self.leading {
+            None => (self.assembly.pattern(), &mut self.matrix),
+            Some(block) => {
+                for (value, &slot) in block.values.iter_mut().zip(&block.slots) {
+                    *value = self.matrix[slot as usize];
+                }
+                (&block.pattern, &mut block.values)
+            }
+        };
+        let diagonal = pattern.diagonal();
+        let mean =
+            diagonal.iter().map(|&k| values[k as usize]).sum::<f64>() / diagonal.len().max(1) as f64;
         let mut shift = shift * mean;
         for _ in 0..8 {
             for &k in diagonal {
-                self.matrix[k as usize] += shift;
+                values[k as usize] += shift;
             }
-            if self.cholesky.factorize(self.assembly.pattern(), &self.matrix).is_ok() {
+            if self.cholesky.factorize(pattern, values).is_ok() {
                 return Ok(());
             }
             shift = (shift * 100.0).max(1e-12 * mean);
@@ -188,9 +269,23 @@ impl LayoutProblem {
         self.cholesky.factorize(pattern, &self.matrix)
     }
 
-    /// Solves with the last factor in place.
+    /// Solves with the last factor in place; held unknowns become zero.
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        self.cholesky.solve(rhs);
+        let (free, held) = rhs.split_at_mut(self.n_free());
+        self.cholesky.solve(free);
+        held.fill(0.0);
+    }
+
+    /// Solves for several right-hand sides of the free unknowns at once, column after column.
+    ///
+    /// # Errors
+    /// When there is no memory for the workspace.
+    pub fn solve_columns(
+        &self,
+        rhs: &mut [f64],
+        columns: usize,
+    ) -> Result<(), NotPositiveDefinite> {
+        self.cholesky.solve_columns(rhs, columns)
     }
 
     /// Assembles a matrix and a vector from a block and a vector per triangle, both in the six corner

@@ -32,7 +32,8 @@ impl LinearSpace {
         }
     }
 
-    fn from_complex(rows: &[Expression], n_pairs: usize) -> Self {
+    /// From rows over pairs of unknowns, one complex coefficient each.
+    pub(crate) fn from_complex(rows: &[Expression], n_pairs: usize) -> Self {
         let parts = |row: &Expression, imaginary: bool| {
             let part = move |(&pair, &c): (&u32, &Complex64)| {
                 let (re, im) = if imaginary { (c.im, c.re) } else { (c.re, -c.im) };
@@ -128,7 +129,7 @@ impl LinearSpace {
 }
 
 /// A complex linear form over wedges (ids below the number of wedges) and chain translations (above).
-type Expression = BTreeMap<u32, Complex64>;
+pub(crate) type Expression = BTreeMap<u32, Complex64>;
 
 fn add_scaled(target: &mut Expression, source: &Expression, factor: Complex64) {
     for (&variable, &c) in source {

@@ -1,5 +1,6 @@
 //! What can be wrong with a map.
 
+use seamstress_surface::{Component, Vertex};
 use std::fmt;
 
 /// One reason why a map is not a seamless map, naming its element (ids from 0).
@@ -84,6 +85,34 @@ pub enum Violation {
         /// Its angle sum, quarter turns.
         quarters: f64,
     },
+    /// The two images of an edge differ in the last bits from a quarter turn and a translation.
+    #[error("edge {}-{} between faces {} and {} does not fit to the last bit",
+        vertices[0], vertices[1], faces[0], faces[1])]
+    InexactEdge {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// Its faces.
+        faces: [u32; 2],
+    },
+    /// A translation across an edge is not integral.
+    #[error("edge {}-{} between faces {} and {} has the translation ({}, {})",
+        vertices[0], vertices[1], faces[0], faces[1], translation[0], translation[1])]
+    FractionalTranslation {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// Its faces.
+        faces: [u32; 2],
+        /// The translation from left to right.
+        translation: [f64; 2],
+    },
+    /// A cone is not at a grid point.
+    #[error("the cone at vertex {vertex} lies at ({}, {})", uv[0], uv[1])]
+    FractionalCone {
+        /// The vertex.
+        vertex: u32,
+        /// Where it lies in one of its faces.
+        uv: [f64; 2],
+    },
     /// The indices of a component do not add up to four times its Euler characteristic.
     #[error("the indices of component {component} sum to {sum}, not to {expected}")]
     PoincareHopf {
@@ -129,6 +158,36 @@ pub enum Violation {
 /// All violations found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Violations(pub Vec<Violation>);
+
+impl Violations {
+    /// Those of one component in the ids of the whole mesh.
+    pub(crate) fn in_whole(mut self, piece: &Component) -> Self {
+        let face_of = |f: &mut u32| *f = piece.faces[*f as usize].0;
+        let vertex_of = |v: &mut u32| *v = piece.vertices[Vertex(*v)].0;
+        for violation in &mut self.0 {
+            match violation {
+                Violation::NonFiniteUv { face }
+                | Violation::FlippedTriangle { face }
+                | Violation::CollapsedTriangle { face }
+                | Violation::ChangedFace { face } => face_of(face),
+                Violation::ConeAngle { vertex, .. }
+                | Violation::FractionalCone { vertex, .. }
+                | Violation::MovedVertex { vertex, .. } => vertex_of(vertex),
+                Violation::OpenSeam { vertices, faces, .. }
+                | Violation::InexactEdge { vertices, faces }
+                | Violation::FractionalTranslation { vertices, faces, .. } => {
+                    vertices.iter_mut().for_each(vertex_of);
+                    faces.iter_mut().for_each(face_of);
+                }
+                Violation::VertexCount { .. }
+                | Violation::FaceCount { .. }
+                | Violation::UvCount { .. }
+                | Violation::PoincareHopf { .. } => {}
+            }
+        }
+        self
+    }
+}
 
 impl fmt::Display for Violations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,0 +1,290 @@
+//! Integer maps of many meshes at several counts of quads.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the table and its progress are what this program is for"
+)]
+
+use clap::Parser;
+use seamstress::integer::IntegerStats;
+use seamstress::{
+    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, MapOptions, SeamlessMap, Tolerance,
+    make_map, to_integer_map,
+};
+use seamstress_bench::markdown::Table;
+use seamstress_bench::meshes::{self, Mesh};
+use seamstress_io::{MapObj, read_mesh, write_map_obj};
+use serde_json::Value;
+use std::error::Error;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// Makes integer maps of every mesh of a folder
+///
+/// Prints, for each mesh and count: the quads achieved, the energy and tau before and after, the seconds of
+/// each part, how often the grid had to be finer, and, with a verifier, what that says.
+#[derive(Debug, Parser)]
+struct Args {
+    /// The folder of meshes; its subfolders are left out
+    folder: PathBuf,
+
+    /// Quads asked for
+    #[arg(long, value_delimiter = ',', default_values_t = [500.0, 2500.0, 10000.0])]
+    quads: Vec<f64>,
+
+    /// Take only the files whose name contains this
+    #[arg(long, value_name = "TEXT")]
+    only: Option<String>,
+
+    /// Leave out meshes of more triangles
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    most_triangles: usize,
+
+    /// Round greedily instead
+    #[arg(long)]
+    greedy: bool,
+
+    /// Keep the seamless maps in this folder, and take those that are there
+    #[arg(long, value_name = "DIR")]
+    maps: Option<PathBuf>,
+
+    /// A script that verifies an integer map: called with --integer --strict, the mesh and the map
+    #[arg(long, value_name = "SCRIPT.py")]
+    verify: Option<PathBuf>,
+
+    /// Write the table to this file as well
+    #[arg(long, value_name = "TABLE.md")]
+    out: Option<PathBuf>,
+}
+
+const TITLES: [&str; 13] = [
+    "mesh", "triangles", "cones", "asked", "quads", "off %", "SD", "tau", "integers", "finer",
+    "reduce/round/move/polish s", "map s", "verifier",
+];
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether every run gave an integer map that the verifier accepts.
+fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+    let mut table = Table::new(TITLES);
+    let mut tally = Tally::default();
+    let mut failures = Vec::new();
+    for path in meshes::list(&args.folder, args.only.as_deref())? {
+        let name = meshes::name(&path);
+        let mesh = match meshes::load(&path) {
+            Ok(mesh) if mesh.connectivity.n_faces() <= args.most_triangles => mesh,
+            Ok(_) => continue,
+            Err(error) => {
+                eprintln!("refused: {error}");
+                continue;
+            }
+        };
+        let (map, seconds) = match seamless(&name, &mesh, args) {
+            Ok(made) => made,
+            Err(error) => {
+                failures.push(format!("* {name}: no seamless map: {error}"));
+                continue;
+            }
+        };
+        for &asked in &args.quads {
+            tally.runs += 1;
+            let row = measure(&mesh, &map, asked, args);
+            match row {
+                Ok(row) => {
+                    tally.add(&row);
+                    let cells = row.cells(&name, &mesh, &map, seconds);
+                    eprintln!("| {} |", cells.join(" | "));
+                    table.push(cells);
+                }
+                Err(error) => {
+                    eprintln!("{name} at {asked}: {error}");
+                    failures.push(format!("* {name} at {asked}: {error}"));
+                }
+            }
+        }
+    }
+    let mut text = format!("{table}\n{tally}");
+    if !failures.is_empty() {
+        text += &format!("\nFailed:\n\n{}\n", failures.join("\n"));
+    }
+    print!("{text}");
+    if let Some(path) = &args.out {
+        fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    }
+    Ok(failures.is_empty() && tally.refuted == 0)
+}
+
+/// The seamless map, made or read, and the seconds it took to make.
+fn seamless(name: &str, mesh: &Mesh, args: &Args) -> Result<(SeamlessMap, f64), Box<dyn Error>> {
+    let kept = args.maps.as_ref().map(|folder| folder.join(format!("{name}.map.obj")));
+    if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
+        let read = read_mesh(path)?;
+        let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
+        let corners = uvs.corners.iter().map(|&c| uvs.coordinates[c as usize]).collect();
+        return Ok((SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?, 0.0));
+    }
+    let start = Instant::now();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let options = MapOptions::default();
+    let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(path) = kept {
+        write_map(&path, mesh, Some(map.corner_uvs()))?;
+    }
+    Ok((map, seconds))
+}
+
+/// What came out of one run.
+struct Row {
+    asked: f64,
+    solution: IntegerSolution,
+    verdict: Option<Verdict>,
+}
+
+fn measure(mesh: &Mesh, map: &SeamlessMap, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+    let rounding =
+        if args.greedy { IntegerRounding::Greedy } else { IntegerRounding::Constrained };
+    let options = IntegerOptions { size: GridSize::Quads(asked), rounding, ..Default::default() };
+    let mut go_on = |_| ControlFlow::Continue(());
+    let solution =
+        to_integer_map(&mesh.connectivity, &mesh.positions, map, &options, &mut go_on)?;
+    let verdict = match &args.verify {
+        Some(script) => Some(verify(script, mesh, &solution)?),
+        None => None,
+    };
+    Ok(Row { asked, solution, verdict })
+}
+
+impl Row {
+    fn off(&self) -> f64 {
+        self.solution.quads() / self.asked - 1.0
+    }
+
+    fn cells(&self, name: &str, mesh: &Mesh, map: &SeamlessMap, seconds: f64) -> Vec<String> {
+        let solution = &self.solution;
+        let sum = |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
+        let (before, after) = (&solution.before, &solution.distortion);
+        let parts = [
+            sum(|c| c.seconds_reduction),
+            sum(|c| c.seconds_rounding),
+            sum(|c| c.seconds_moving),
+            sum(|c| c.seconds_polish),
+        ];
+        vec![
+            name.to_owned(),
+            mesh.connectivity.n_faces().to_string(),
+            map.cones().len().to_string(),
+            format!("{:.0}", self.asked),
+            format!("{:.1}", solution.quads()),
+            format!("{:+.1}", 100.0 * self.off()),
+            format!("{:.3} to {:.3}", before.symmetric_dirichlet, after.symmetric_dirichlet),
+            format!("{:.2} to {:.2}", before.tau, after.tau),
+            format!("{:.0}", sum(|c| c.integers as f64)),
+            solution.refinements().to_string(),
+            parts.map(|x| format!("{x:.2}")).join("/"),
+            format!("{seconds:.1}"),
+            self.verdict.as_ref().map_or("-".into(), Verdict::cell),
+        ]
+    }
+}
+
+/// Counts over all runs.
+#[derive(Default)]
+struct Tally {
+    runs: usize,
+    done: usize,
+    refined: usize,
+    far: usize,
+    refuted: usize,
+    verified: usize,
+}
+
+impl Tally {
+    fn add(&mut self, row: &Row) {
+        self.done += 1;
+        self.refined += usize::from(row.solution.refinements() > 0);
+        self.far += usize::from(row.asked >= 2500.0 && row.off().abs() > 0.05);
+        self.verified += usize::from(row.verdict.is_some());
+        self.refuted += usize::from(row.verdict.as_ref().is_some_and(|v| !v.is_good));
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(
+            f,
+            "{} of {} runs gave an integer map, {} of them on a finer grid. {} of those at 2500 and more \
+             are off by over 5 %. The verifier refused {} of {}.",
+            self.done, self.runs, self.refined, self.far, self.refuted, self.verified
+        )
+    }
+}
+
+/// What the script says of an integer map.
+struct Verdict {
+    is_good: bool,
+    flips: Option<u64>,
+}
+
+impl Verdict {
+    fn cell(&self) -> String {
+        let word = if self.is_good { "ok" } else { "FAIL" };
+        let flips = self.flips.map_or("-".into(), |n| n.to_string());
+        format!("{word}, {flips} flips")
+    }
+}
+
+fn verify(
+    script: &Path,
+    mesh: &Mesh,
+    solution: &IntegerSolution,
+) -> Result<Verdict, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let [source, map] = ["source.obj", "map.obj"].map(|name| folder.path().join(name));
+    write_map(&source, mesh, None)?;
+    write_map(&map, mesh, Some(solution.map.corner_uvs()))?;
+    let mut command = Command::new("python3");
+    command.arg(script).args(["--integer", "--strict"]).arg(source).arg(map);
+    let output = command.output()?;
+    let json: Value = serde_json::from_slice(&output.stdout)?;
+    let is_good = output.status.success() && json["ok"] == Value::Bool(true);
+    Ok(Verdict { is_good, flips: json["flipped_or_degenerate"].as_u64() })
+}
+
+/// Writes triangles, with UVs or without.
+fn write_map(path: &Path, mesh: &Mesh, uvs: Option<&[[f64; 2]]>) -> Result<(), Box<dyn Error>> {
+    let mut file = BufWriter::new(File::create(path)?);
+    let connectivity = &mesh.connectivity;
+    let faces: Vec<[u32; 3]> =
+        connectivity.faces().map(|f| connectivity.face_vertices(f).map(|v| v.0)).collect();
+    match uvs {
+        Some(corner_uvs) => {
+            let (positions, faces) = (&mesh.positions, &faces);
+            write_map_obj(&mut file, &MapObj { positions, faces, corner_uvs, comments: &[] })?;
+        }
+        None => {
+            for [x, y, z] in &mesh.positions {
+                writeln!(file, "v {x} {y} {z}")?;
+            }
+            for face in faces {
+                let [a, b, c] = face.map(|v| v + 1);
+                writeln!(file, "f {a} {b} {c}")?;
+            }
+        }
+    }
+    Ok(file.flush()?)
+}

@@ -1,0 +1,102 @@
+//! Moving the integral part of a layout without flipping a triangle.
+
+use super::reduced::couple;
+use crate::layout::energy::SymmetricDirichlet;
+use crate::layout::newton::{NewtonOptions, minimize};
+use crate::layout::problem::LayoutProblem;
+use crate::layout::triangle::largest_step;
+use crate::progress::{Cancelled, Watch};
+
+/// Most moves.
+const MOST_MOVES: usize = 30;
+/// Share of the largest flip-free step that is taken.
+const STEP_FRACTION: f64 = 0.9;
+/// What a move may raise the energy to: by this factor, or by 1 (an isometry has 4).
+const ENERGY_GROWTH: f64 = 1.6;
+/// Moves shorter than this are followed by centring steps.
+const SHORT_MOVE: f64 = 0.5;
+const CENTRING: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e-4 };
+/// The way is blocked after this many moves of less than a fiftieth of the rest.
+const TINY_MOVE: f64 = 0.02;
+const MOST_TINY_MOVES: usize = 6;
+const SMALLEST_MOVE: f64 = 1e-6;
+const SHIFT: f64 = 1e-8;
+
+/// Why the integral part did not arrive.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Blocked {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Triangles would collapse on the way.
+    #[error("stopped at {reached:.2} of the way to the integers, where triangles collapse")]
+    Stuck {
+        /// Share of the way.
+        reached: f64,
+    },
+}
+
+/// Moves the held unknowns to `target`, the free ones along with them; returns the unknowns and the number
+/// of moves.
+///
+/// Each move is the Newton step of the symmetric Dirichlet energy under the condition that the held part
+/// goes all the way, `H_xx dx = -(g + H d)_x`, cut short of the first collapse and where the energy
+/// would rise too much; after a short one, Newton steps centre the rest.
+///
+/// # Errors
+/// [`Blocked`].
+pub fn advance(
+    problem: &mut LayoutProblem,
+    mut y: Vec<f64>,
+    target: &[f64],
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<f64>, usize), Blocked> {
+    let n_free = problem.n_free();
+    let (mut rest, mut tiny) = (1.0, 0);
+    for moves in 1..=MOST_MOVES {
+        watch.pulse()?;
+        let Some(taken) = advance_once(problem, &mut y, target) else { break };
+        rest *= 1.0 - taken;
+        if taken == 1.0 {
+            // To the last bit.
+            y[n_free..].copy_from_slice(target);
+            return Ok((y, moves));
+        }
+        if taken < SHORT_MOVE {
+            y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
+        }
+        tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
+        if tiny == MOST_TINY_MOVES {
+            break;
+        }
+    }
+    Err(Blocked::Stuck { reached: 1.0 - rest })
+}
+
+/// One move; the share of the rest of the way that was taken.
+fn advance_once(problem: &mut LayoutProblem, y: &mut [f64], target: &[f64]) -> Option<f64> {
+    let n_free = problem.n_free();
+    let z = problem.space().expand(y);
+    let energy = problem.value(&SymmetricDirichlet, &z);
+    let mut step = problem.linearize(&SymmetricDirichlet, &z);
+    problem.factorize(SHIFT).ok()?;
+    let way: Vec<f64> = target.iter().zip(&y[n_free..]).map(|(t, y)| t - y).collect();
+    for (s, coupled) in step.iter_mut().zip(couple(problem, &way)) {
+        *s = -(*s + coupled);
+    }
+    problem.solve(&mut step);
+    step[n_free..].copy_from_slice(&way);
+    let dz = problem.space().expand(&step);
+    let largest = STEP_FRACTION * largest_step(problem.triangles(), &z, &dz);
+    let cap = (ENERGY_GROWTH * energy).max(energy + 1.0);
+    let mut t = largest.min(1.0);
+    while t > SMALLEST_MOVE {
+        let moved: Vec<_> = z.iter().zip(&dz).map(|(z, d)| z + d * t).collect();
+        if problem.value(&SymmetricDirichlet, &moved) < cap {
+            y.iter_mut().zip(&step).for_each(|(y, s)| *y += t * s);
+            return Some(t);
+        }
+        t *= 0.6;
+    }
+    None
+}

@@ -1,0 +1,383 @@
+//! An integer map of one connected mesh.
+
+use super::barrier::{Blocked, advance};
+use super::certificate::IntegerMap;
+use super::connections::{Connection, connections};
+use super::gauss::{Gauss, Overflow};
+use super::reduced::{Dense, couple, schur_complement};
+use super::rounding::{
+    Constraint, Rounded, RoundingProblem, round_constrained, round_greedily,
+};
+use super::snap::snap;
+use super::space::IntegerSpace;
+use super::{IntegerOptions, IntegerRounding};
+use crate::cut::Cut;
+use crate::layout::energy::SymmetricDirichlet;
+use crate::layout::exact::ExactLayout;
+use crate::layout::newton::{NewtonOptions, minimize};
+use crate::layout::problem::LayoutProblem;
+use crate::layout::triangle::triangles;
+use crate::map::{SeamlessMap, Violations};
+use crate::progress::{Cancelled, Watch};
+use num_complex::Complex64;
+use seamstress_numerics::NotPositiveDefinite;
+use seamstress_surface::{HalfedgeData, Metric, TriMesh, VertexData};
+use std::time::Instant;
+
+/// Connections of cones shorter than this are constrained, grid units.
+const CONSTRAINED_LENGTH: f64 = 2.5;
+/// What the area of a cell falls by when the grid is made finer.
+const REFINEMENT: f64 = 1.1;
+/// Finer grids tried.
+const MOST_REFINEMENTS: usize = 24;
+const SHIFT: f64 = 1e-8;
+const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
+
+/// Why a component has no integer map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum IntegerFailure {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The relations of the seams do not fit into 64-bit integers.
+    #[error(transparent)]
+    Overflow(#[from] Overflow),
+    /// A linear system could not be solved.
+    #[error(transparent)]
+    Numeric(#[from] NotPositiveDefinite),
+    /// The given map flips when its seams are closed exactly.
+    #[error("the map has triangles too thin to close its seams exactly")]
+    Unreadable,
+    /// Straight connections of cones would vanish.
+    #[error("{violated} straight lines between cones would vanish or turn around")]
+    Conflict {
+        /// How many.
+        violated: usize,
+    },
+    /// Triangles would collapse on the way to the integers.
+    #[error("the way to the integers is blocked at {reached:.2} of it, where triangles collapse")]
+    Blocked {
+        /// Share of the way that could be gone.
+        reached: f64,
+    },
+    /// The result fails its certificate.
+    #[error(transparent)]
+    Uncertified(#[from] Violations),
+}
+
+impl From<Blocked> for IntegerFailure {
+    fn from(blocked: Blocked) -> Self {
+        match blocked {
+            Blocked::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            Blocked::Stuck { reached } => Self::Blocked { reached },
+        }
+    }
+}
+
+impl IntegerFailure {
+    /// Whether a finer grid may help.
+    fn asks_for_finer_grid(&self) -> bool {
+        matches!(self, Self::Conflict { .. } | Self::Blocked { .. } | Self::Uncertified(_))
+    }
+}
+
+/// How the integer map of one component was made.
+#[derive(Debug, Clone, Default, serde::Serialize)]
+#[non_exhaustive]
+pub struct IntegerStats {
+    /// Faces.
+    pub faces: usize,
+    /// Real integer unknowns.
+    pub integers: usize,
+    /// Straight connections of cones that were constrained.
+    pub constraints: usize,
+    /// Times the rounding started over with other priorities.
+    pub restarts: usize,
+    /// Moves that carried the layout to the integers.
+    pub moves: usize,
+    /// Newton iterations after that.
+    pub polish: usize,
+    /// Times the grid was made finer, each by 1.1 in the number of quads.
+    pub refinements: usize,
+    /// Why the first grid would not do, if so.
+    pub refined_because: Option<String>,
+    /// Area in the plane, grid units.
+    pub quads: f64,
+    /// Seconds for reading the map and reducing the energy to the integers.
+    pub seconds_reduction: f64,
+    /// Seconds for rounding, over all grids tried.
+    pub seconds_rounding: f64,
+    /// Seconds for the way to the integers, over all grids tried.
+    pub seconds_moving: f64,
+    /// Seconds for the polish.
+    pub seconds_polish: f64,
+}
+
+/// Corner UVs in grid units, and how they were made.
+#[derive(Debug, Clone)]
+pub(super) struct Placed {
+    /// One per corner.
+    pub(super) corner_uvs: Vec<[f64; 2]>,
+    /// Width of their box, a whole number; the box begins at the column asked for.
+    pub(super) columns: i64,
+    /// How.
+    pub(super) stats: IntegerStats,
+}
+
+/// A component ready to be rounded to any grid.
+pub(super) struct IntegerProblem<'a> {
+    mesh: &'a TriMesh,
+    options: &'a IntegerOptions,
+    cut: Cut,
+    matching: HalfedgeData<i32>,
+    is_cone: VertexData<bool>,
+    space: IntegerSpace,
+    problem: LayoutProblem,
+    /// The unknowns of the seamless map, in mean edge lengths.
+    y: Vec<f64>,
+    /// Its integral coordinates, not integral as yet.
+    zeta: Vec<f64>,
+    matrix: Dense,
+    /// Connections up to a radius.
+    near: (f64, Vec<Connection>),
+    /// Mesh length of a mean edge.
+    unit: f64,
+    seconds: f64,
+}
+
+impl<'a> IntegerProblem<'a> {
+    /// Reads a seamless map of a connected mesh, and reduces the energy around it to the integers.
+    ///
+    /// # Errors
+    /// [`IntegerFailure`].
+    pub(super) fn new(
+        mesh: &'a TriMesh,
+        metric: &Metric,
+        map: &SeamlessMap,
+        options: &'a IntegerOptions,
+    ) -> Result<Self, IntegerFailure> {
+        let start = Instant::now();
+        let (layout, mut y) = ExactLayout::from_map(mesh, metric, map)?;
+        layout.rescale(&mut y);
+        let z = layout.expand(&y);
+        let is_cone: VertexData<bool> = layout.index.iter().map(|&k| k != 0).collect();
+        let ExactLayout { cut, matching, .. } = layout;
+        let space = IntegerSpace::new(mesh, &cut, &matching, &is_cone)?;
+        let (zeta, x) = space.read(&z);
+        let y = flat(x.iter().chain(&space.variables(&zeta)));
+        let held = 2 * space.n_ordinary();
+        let mut problem =
+            LayoutProblem::with_held(space.linear(), triangles(mesh, metric, &cut), held)?;
+        let z = problem.space().expand(&y);
+        if !problem.value(&SymmetricDirichlet, &z).is_finite() {
+            return Err(IntegerFailure::Unreadable);
+        }
+        match options.rounding {
+            IntegerRounding::Constrained => {
+                problem.linearize(&SymmetricDirichlet, &z);
+            }
+            IntegerRounding::Greedy => problem.assemble_dirichlet(),
+        }
+        problem.factorize(SHIFT)?;
+        let matrix = normalized(schur_complement(&problem, space.lattice())?);
+        let zeta = flat(&zeta);
+        let seconds = start.elapsed().as_secs_f64();
+        let near = (0.0, Vec::new());
+        let unit = metric.unit;
+        Ok(Self {
+            mesh,
+            options,
+            cut,
+            matching,
+            is_cone,
+            space,
+            problem,
+            y,
+            zeta,
+            matrix,
+            near,
+            unit,
+            seconds,
+        })
+    }
+
+    /// Area of the seamless map, mesh units.
+    pub(super) fn area(&self) -> f64 {
+        let z = self.problem.space().expand(&self.y);
+        let doubled = self.problem.triangles().iter().map(|t| t.doubled_area(&z));
+        0.5 * doubled.sum::<f64>() * self.unit * self.unit
+    }
+
+    /// The integer map for cells of a size in mesh units, or of the first finer one that works; its UVs
+    /// begin at a column.
+    ///
+    /// # Errors
+    /// [`IntegerFailure`], of the first grid.
+    pub(super) fn solve(
+        &mut self,
+        cell: f64,
+        column: i64,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Placed, IntegerFailure> {
+        let mut stats = IntegerStats {
+            faces: self.mesh.n_faces(),
+            integers: self.zeta.len(),
+            seconds_reduction: self.seconds,
+            ..Default::default()
+        };
+        let mut h = cell / self.unit;
+        let mut first = None;
+        loop {
+            match self.attempt(h, column, &mut stats, watch) {
+                Ok((corner_uvs, columns)) => {
+                    stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
+                    return Ok(Placed { corner_uvs, columns, stats });
+                }
+                Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
+                Err(failure) => {
+                    let first = first.get_or_insert(failure);
+                    let is_last = stats.refinements == MOST_REFINEMENTS
+                        || self.options.rounding == IntegerRounding::Greedy;
+                    if is_last {
+                        return Err(std::mem::replace(first, IntegerFailure::Unreadable));
+                    }
+                }
+            }
+            stats.refinements += 1;
+            h /= REFINEMENT.sqrt();
+        }
+    }
+
+    /// One grid: rounds, moves to the integers, polishes, writes in exact numbers and certifies.
+    fn attempt(
+        &mut self,
+        h: f64,
+        column: i64,
+        stats: &mut IntegerStats,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
+        watch.tick(0.1)?;
+        let clock = Instant::now();
+        let rounding = self.rounding_problem(h)?;
+        stats.constraints = rounding.constraints.len();
+        let rounded = match self.options.rounding {
+            IntegerRounding::Constrained => round_constrained(&rounding)?,
+            IntegerRounding::Greedy => round_greedily(&rounding)?,
+        };
+        stats.restarts += rounded.restarts;
+        let variables = self.integers(&rounded)?;
+        stats.seconds_rounding += clock.elapsed().as_secs_f64();
+        watch.tick(0.4)?;
+        let clock = Instant::now();
+        let target: Vec<f64> =
+            flat(&variables.iter().map(|x| x.to_complex() * h).collect::<Vec<_>>());
+        let mut y;
+        match self.options.rounding {
+            IntegerRounding::Constrained => {
+                if rounded.violated > 0 {
+                    return Err(IntegerFailure::Conflict { violated: rounded.violated });
+                }
+                let arrived = advance(&mut self.problem, self.y.clone(), &target, watch);
+                stats.seconds_moving += clock.elapsed().as_secs_f64();
+                (y, stats.moves) = arrived?;
+                let clock = Instant::now();
+                let polished =
+                    minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
+                stats.seconds_polish += clock.elapsed().as_secs_f64();
+                stats.polish = polished.iterations;
+                y = polished.y;
+            }
+            IntegerRounding::Greedy => {
+                y = self.follow(&target);
+                stats.seconds_moving += clock.elapsed().as_secs_f64();
+            }
+        }
+        let (corner_uvs, columns) = self.corner_uvs(&variables, &y, h, column)?;
+        let tolerance = &self.options.tolerance;
+        let map = IntegerMap::certify(self.mesh, corner_uvs, tolerance)?;
+        stats.quads = map.certificate().area;
+        Ok((map.corner_uvs().to_vec(), columns))
+    }
+
+    fn rounding_problem(&mut self, h: f64) -> Result<RoundingProblem, Overflow> {
+        let radius = CONSTRAINED_LENGTH * h;
+        if radius > self.near.0 {
+            let z = self.problem.space().expand(&self.y);
+            let found = connections(
+                self.mesh,
+                &self.cut,
+                &self.matching,
+                &self.is_cone,
+                &self.space,
+                &z,
+                radius,
+            )?;
+            self.near = (radius, found);
+        }
+        let mean: Vec<f64> = self.zeta.iter().map(|x| x / h).collect();
+        let short = self.near.1.iter().filter(|c| c.length < radius);
+        let constraints = short.map(|c| Constraint::new(c, &mean, h)).collect();
+        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints })
+    }
+
+    fn integers(&self, rounded: &Rounded) -> Result<Vec<Gauss>, Overflow> {
+        let zeta: Vec<Gauss> =
+            rounded.x.chunks(2).map(|pair| Gauss { re: pair[0], im: pair[1] }).collect();
+        self.space.lattice().expand(&zeta)
+    }
+
+    /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
+    /// quadratic one, is minimised.
+    fn follow(&mut self, target: &[f64]) -> Vec<f64> {
+        let held = self.problem.n_free();
+        let way: Vec<f64> = target.iter().zip(&self.y[held..]).map(|(t, y)| t - y).collect();
+        let mut step = couple(&self.problem, &way);
+        step.resize(self.y.len(), 0.0);
+        self.problem.solve(&mut step);
+        let mut y: Vec<f64> = self.y.iter().zip(&step).map(|(y, s)| y - s).collect();
+        y[held..].copy_from_slice(target);
+        y
+    }
+
+    /// Exact corner UVs in grid units, their box beginning at a column and at row 0, and its width.
+    fn corner_uvs(
+        &self,
+        variables: &[Gauss],
+        y: &[f64],
+        h: f64,
+        column: i64,
+    ) -> Result<(Vec<[f64; 2]>, i64), Overflow> {
+        let x: Vec<Complex64> = y[..self.problem.n_free()]
+            .chunks(2)
+            .map(|pair| Complex64::new(pair[0], pair[1]) / h)
+            .collect();
+        let z = self.problem.space().expand(y);
+        let bound = |start: f64, pick: fn(f64, f64) -> f64, part: fn(&Complex64) -> f64| {
+            z.iter().map(part).fold(start, pick) / h
+        };
+        let (re, im) = (|z: &Complex64| z.re, |z: &Complex64| z.im);
+        let [left, bottom] = [re, im].map(|part| bound(f64::INFINITY, f64::min, part).floor() as i64);
+        let right = bound(f64::NEG_INFINITY, f64::max, re).ceil() as i64;
+        let shift = Gauss { re: column, im: 0 }.plus(Gauss { re: left, im: bottom }.negated())?;
+        let z = snap(&self.space, variables, &x, shift)?;
+        let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
+        Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
+    }
+}
+
+/// Scaled to a mean diagonal of one.
+fn normalized(mut matrix: Dense) -> Dense {
+    let n = matrix.order;
+    let trace: f64 = (0..n).map(|k| matrix.row(k)[k]).sum();
+    if trace > 0.0 {
+        let scale = n as f64 / trace;
+        matrix.values.iter_mut().for_each(|x| *x *= scale);
+    }
+    matrix
+}
+
+/// Real and imaginary parts by turns.
+fn flat<'z>(z: impl IntoIterator<Item = &'z Complex64>) -> Vec<f64> {
+    z.into_iter().flat_map(|z| [z.re, z.im]).collect()
+}
