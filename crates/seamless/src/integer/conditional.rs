@@ -77,25 +77,19 @@ impl Conditional {
         (0..n).map(|k| self.covariance.row(k)[k]).sum::<f64>() / n.max(1) as f64
     }
 
-    /// Variance of a row's value: how freely it can still be chosen.
-    pub fn variance(&self, row: &Row) -> f64 {
-        row.iter().map(|&(k, c)| c as f64 * apply(row, self.covariance.row(k))).sum()
-    }
-
-    /// Covariance of two rows.
-    pub fn covariance_of(&self, a: &Row, b: &Row) -> f64 {
-        a.iter().map(|&(k, c)| c as f64 * apply(b, self.covariance.row(k))).sum()
-    }
-
-    /// What a condition on a row would do.
-    pub fn effect(&self, row: &Row) -> Effect {
+    /// What a condition on a row would do, perhaps after one more condition of the effect given.
+    pub fn effect(&self, row: &Row, after: Option<&Effect>) -> Effect {
         let mut reduced = vec![0; self.mean.len()];
         row.iter().for_each(|&(k, c)| reduced[k] = c);
-        for condition in &self.conditions {
-            let factor = reduced[condition.pivot] * condition.row[condition.pivot];
+        let mut reduce = |row: &[i64], pivot: usize| {
+            let factor = reduced[pivot] * row[pivot];
             if factor != 0 {
-                subtract(&mut reduced, factor, &condition.row);
+                subtract(&mut reduced, factor, row);
             }
+        };
+        self.conditions.iter().for_each(|c| reduce(&c.row, c.pivot));
+        if let Some(Effect::Free { reduced, pivot }) = after {
+            reduce(reduced, *pivot);
         }
         match reduced.iter().position(|c| c.abs() == 1) {
             Some(pivot) => Effect::Free { reduced, pivot },
@@ -104,27 +98,24 @@ impl Conditional {
         }
     }
 
-    /// Adds a condition whose effect is [`Effect::Free`]; the direction in which the mean moves per unit.
-    pub fn fix(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {
-        let gain = self.gain(row);
-        let error = value as f64 - apply(row, &self.mean);
-        self.mean.iter_mut().zip(&gain).for_each(|(m, g)| *m += g * error);
-        let spread: Vec<f64> =
-            (0..self.mean.len()).map(|i| apply(row, self.covariance.row(i))).collect();
-        let n = self.covariance.order;
-        for (i, &g) in gain.iter().enumerate().filter(|(_, g)| **g != 0.0) {
-            let target = &mut self.covariance.values[i * n..(i + 1) * n];
-            target.iter_mut().zip(&spread).for_each(|(c, s)| *c -= g * s);
-        }
-        self.add_condition(row, value, reduced, pivot);
+    /// Covariance of every coordinate with the value of a row.
+    pub fn spread(&self, row: &Row) -> Vec<f64> {
+        (0..self.mean.len()).map(|i| apply(row, self.covariance.row(i))).collect()
     }
 
-    /// How the mean moves when a row's value is raised by one.
-    pub fn gain(&self, row: &Row) -> Vec<f64> {
-        let spread: Vec<f64> =
-            (0..self.mean.len()).map(|i| apply(row, self.covariance.row(i))).collect();
+    /// Adds a condition whose effect is [`Effect::Free`].
+    pub fn fix(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {
+        let n = self.covariance.order;
+        let spread = self.spread(row);
         let variance = apply(row, &spread);
-        spread.iter().map(|s| s / variance).collect()
+        let error = value as f64 - apply(row, &self.mean);
+        for (i, s) in spread.iter().enumerate().filter(|(_, s)| **s != 0.0) {
+            let gain = s / variance;
+            self.mean[i] += gain * error;
+            let target = &mut self.covariance.values[i * n..(i + 1) * n];
+            target.iter_mut().zip(&spread).for_each(|(c, s)| *c -= gain * s);
+        }
+        self.add_condition(row, value, reduced, pivot);
     }
 
     fn add_condition(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {

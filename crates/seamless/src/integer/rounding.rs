@@ -4,7 +4,6 @@ use super::conditional::{Conditional, Effect, Row, apply, energy};
 use super::connections::Connection;
 use super::reduced::Dense;
 use super::search::improve;
-use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A straight connection of two cones as the rounding sees it: it may neither vanish nor turn around.
@@ -80,6 +79,8 @@ const PRIORITY: f64 = 10.0;
 const TRIED: usize = 8;
 /// Values looked at are this many steps around the nearest.
 const REACH: i64 = 2;
+/// A determined value this close to an integer is that integer.
+const SAME: f64 = 1e-5;
 /// A row whose variance is below this share of the mean is determined.
 const DETERMINED: f64 = 1e-9;
 
@@ -105,7 +106,7 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     let mut best: Option<(usize, f64, Vec<i64>)> = None;
     let mut restarts = 0;
     loop {
-        let (conditional, conflicts) = fix_connections(problem, start.clone(), &priority);
+        let (conditional, conflicts) = fix_connections(&problem.constraints, start.clone(), &priority);
         let x = improve(problem, conditional.round_rest());
         let violated = violations(problem, &x);
         let key = (violated.len(), energy(&problem.matrix, &problem.mean, &x));
@@ -130,12 +131,11 @@ fn violations(problem: &RoundingProblem, x: &[i64]) -> Vec<usize> {
 /// Fixes connections, the shortest as they are now first, at the cheapest value that leaves no determined
 /// connection violated; returns those for which there was none as well.
 fn fix_connections(
-    problem: &RoundingProblem,
+    constraints: &[Constraint],
     start: Conditional,
     priority: &[f64],
 ) -> (Conditional, Vec<usize>) {
-    let constraints = &problem.constraints;
-    let mut fixing = Fixing { constraints, undetermined: DETERMINED * start.mean_variance(), now: start };
+    let mut fixing = Fixing::new(constraints, start);
     let mut done = vec![false; constraints.len()];
     let mut conflicts = Vec::new();
     loop {
@@ -155,89 +155,143 @@ fn fix_connections(
     (fixing.now, conflicts)
 }
 
+/// Connections being fixed, with the mean and the variance of each under the conditions so far.
 struct Fixing<'a> {
     constraints: &'a [Constraint],
     now: Conditional,
+    means: Vec<[f64; 2]>,
+    variances: Vec<f64>,
     /// Variance below which a value is determined.
-    undetermined: f64,
+    determined: f64,
 }
 
-impl Fixing<'_> {
-    fn value(&self, i: usize) -> [f64; 2] {
-        self.constraints[i].rows.each_ref().map(|row| apply(row, self.now.mean()))
+/// One of the two rows of a connection that is about to be fixed.
+struct Part {
+    effect: Effect,
+    /// Covariance with both rows of every connection, given the part before.
+    coupling: Vec<[f64; 2]>,
+    variance: f64,
+}
+
+impl Part {
+    /// How the value of a connection moves when this part is raised by one.
+    fn gain(&self, j: usize) -> [f64; 2] {
+        match self.effect {
+            Effect::Free { .. } => self.coupling[j].map(|c| c / self.variance),
+            _ => [0.0; 2],
+        }
+    }
+
+    /// By how much fixing this part lowers the variance of a connection.
+    fn settles(&self, j: usize) -> f64 {
+        let [gain, c] = [self.gain(j), self.coupling[j]];
+        gain[0] * c[0] + gain[1] * c[1]
+    }
+}
+
+impl<'a> Fixing<'a> {
+    fn new(constraints: &'a [Constraint], start: Conditional) -> Self {
+        let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
+        let variance =
+            |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
+        Self {
+            constraints,
+            means: constraints.iter().map(mean).collect(),
+            variances: constraints.iter().map(variance).collect(),
+            determined: DETERMINED * start.mean_variance(),
+            now: start,
+        }
     }
 
     fn length(&self, i: usize) -> f64 {
-        let [u, v] = self.value(i);
+        let [u, v] = self.means[i];
         u.hypot(v).min(self.constraints[i].length)
     }
 
     fn is_open(&self, i: usize) -> bool {
-        let rows = &self.constraints[i].rows;
-        rows.iter().map(|row| self.now.variance(row)).sum::<f64>() > self.undetermined
+        self.variances[i] > self.determined
     }
 
     /// Fixes a connection; false, and nothing changed, if no value will do.
     fn fix(&mut self, i: usize) -> bool {
-        let before = self.now.clone();
-        let candidates = self.candidates(i);
-        // Which connections a condition determines does not depend on its value.
-        let mut determined: Option<Vec<usize>> = None;
-        for value in candidates {
-            match self.set(i, value) {
-                None => break,
-                Some(false) => {}
-                Some(true) => {
-                    let determined = determined.get_or_insert_with(|| {
-                        (0..self.constraints.len()).filter(|&j| !self.is_open(j)).collect()
-                    });
-                    if determined.iter().all(|&j| self.constraints[j].allows(self.value(j))) {
-                        return true;
-                    }
-                }
-            }
-            self.now = before.clone();
+        let parts = self.parts(i);
+        if parts.iter().any(|part| matches!(part.effect, Effect::NoUnit)) {
+            return false;
         }
-        self.now = before;
-        false
+        // Which connections get determined does not depend on the value.
+        let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
+        let determined: Vec<usize> =
+            (0..self.constraints.len()).filter(|&j| left(j) <= self.determined).collect();
+        let is_possible = |value: &[i64; 2]| {
+            let errors = self.errors(i, &parts, *value);
+            let fits = |part: usize| {
+                matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
+            };
+            let allows = |&j: &usize| self.constraints[j].allows(self.moved(j, &parts, errors));
+            fits(0) && fits(1) && determined.iter().all(allows)
+        };
+        let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
+            return false;
+        };
+        let errors = self.errors(i, &parts, value);
+        for j in 0..self.constraints.len() {
+            self.means[j] = self.moved(j, &parts, errors);
+            self.variances[j] -= parts[0].settles(j) + parts[1].settles(j);
+        }
+        for ((part, row), value) in parts.into_iter().zip(&self.constraints[i].rows).zip(value) {
+            if let Effect::Free { reduced, pivot } = part.effect {
+                self.now.fix(row, value, reduced, pivot);
+            }
+        }
+        true
     }
 
-    /// Sets both parts of a displacement. None if some integers are impossible whatever the value, false
-    /// if this value is.
-    fn set(&mut self, i: usize, value: [i64; 2]) -> Option<bool> {
-        for (row, value) in self.constraints[i].rows.iter().zip(value) {
-            match self.now.effect(row) {
-                Effect::Determined => {
-                    if (apply(row, self.now.mean()) - value as f64).abs() > 1e-5 {
-                        return Some(false);
-                    }
-                }
-                Effect::Free { reduced, pivot } => self.now.fix(row, value, reduced, pivot),
-                Effect::NoUnit => return None,
-            }
+    /// What fixing the two rows of a connection, one after the other, would do.
+    fn parts(&self, i: usize) -> [Part; 2] {
+        let rows = &self.constraints[i].rows;
+        let spread = self.now.spread(&rows[0]);
+        let effect = self.now.effect(&rows[0], None);
+        let first = self.part(&rows[0], effect, &spread);
+        let mut spread_after = self.now.spread(&rows[1]);
+        let effect = self.now.effect(&rows[1], Some(&first.effect));
+        if matches!(first.effect, Effect::Free { .. }) {
+            let gain = apply(&rows[1], &spread) / first.variance;
+            spread_after.iter_mut().zip(&spread).for_each(|(s, before)| *s -= gain * before);
         }
-        Some(true)
+        let second = self.part(&rows[1], effect, &spread_after);
+        [first, second]
+    }
+
+    fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
+        let coupling = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, spread));
+        let coupling = self.constraints.iter().map(coupling).collect();
+        Part { effect, coupling, variance: apply(row, spread) }
+    }
+
+    /// How far a value is from the mean of the first row, and then from that of the second.
+    fn errors(&self, i: usize, parts: &[Part; 2], value: [i64; 2]) -> [f64; 2] {
+        let first = value[0] as f64 - self.means[i][0];
+        let second = value[1] as f64 - self.means[i][1] - parts[0].gain(i)[1] * first;
+        [first, second]
+    }
+
+    /// The mean of a connection after fixing.
+    fn moved(&self, j: usize, parts: &[Part; 2], errors: [f64; 2]) -> [f64; 2] {
+        let [a, b] = [parts[0].gain(j), parts[1].gain(j)];
+        [0, 1].map(|k| self.means[j][k] + a[k] * errors[0] + b[k] * errors[1])
     }
 
     /// Allowed values of a connection near the one it has, by the energy they cost.
-    fn candidates(&self, i: usize) -> Vec<[i64; 2]> {
+    fn candidates(&self, i: usize, parts: &[Part; 2]) -> Vec<[i64; 2]> {
         let constraint = &self.constraints[i];
-        let now = self.value(i);
-        let [a, b] = &constraint.rows;
-        let (aa, ab, bb) =
-            (self.now.variance(a), self.now.covariance_of(a, b), self.now.variance(b));
-        // The inverse of the 2 x 2 covariance, kept away from singular.
-        let floor = DETERMINED * (aa + bb);
-        let (aa, bb) = (aa + floor, bb + floor);
-        let determinant = (aa * bb - ab * ab).max(floor * floor);
-        let cost = |v: [i64; 2]| {
-            let (x, y) = (v[0] as f64 - now[0], v[1] as f64 - now[1]);
-            (bb * x * x - 2.0 * ab * x * y + aa * y * y) / determinant
+        let [u, v] = self.means[i].map(|x| x.round() as i64);
+        let cost = |value: [i64; 2]| {
+            let errors = self.errors(i, parts, value);
+            let of = |k: usize| errors[k] * errors[k] / parts[k].variance.max(self.determined);
+            of(0) + of(1)
         };
-        let nearest = Complex64::new(now[0].round(), now[1].round());
         let mut values: Vec<[i64; 2]> = (-REACH..=REACH)
-            .flat_map(|x| (-REACH..=REACH).map(move |y| [x, y]))
-            .map(|[x, y]| [nearest.re as i64 + x, nearest.im as i64 + y])
+            .flat_map(|x| (-REACH..=REACH).map(move |y| [u + x, v + y]))
             .filter(|v| constraint.allows(v.map(|x| x as f64)))
             .collect();
         values.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)).then(a.cmp(&b)));
