@@ -7,6 +7,7 @@ mod faults;
 mod features;
 mod field;
 mod input;
+mod integer;
 mod job;
 mod layout_quads;
 mod made;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
     let args = Args::parse();
     let done = match &args.command {
         Command::Map(args) => map::run(args),
+        Command::Integer(args) => integer::run(args),
         Command::Check(args) => check::run(args),
         Command::Extract(args) => extract::run(args),
         Command::Field(args) => field::run(args),

@@ -187,8 +187,8 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
         command: "map",
         options: json!({
             "repair": args.repair,
-            "cone_bias": args.cone_bias,
-            "cone_price": args.cone_price,
+            "cone_bias": args.method.cone_bias,
+            "cone_price": args.method.cone_price,
             "features": report::sources_json(&args.features),
             "align_boundary": args.features.align_boundary,
             "features_strict": args.features_strict,
@@ -261,7 +261,7 @@ fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     rows.extend(product.made.rows());
     rows.extend(product.features.iter().flat_map(summary::aligned_rows));
-    rows.push(summary::cost_row(cost, &product.made.components));
+    rows.push(summary::cost_row(cost, summary::stages(&product.made.components)));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
     rows.push(row("written", &names.join(", ")));

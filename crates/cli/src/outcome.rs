@@ -1,6 +1,6 @@
 //! How a run ends: exit codes, and failures with their messages.
 
-use seamstress::{MapError, Violations};
+use seamstress::{IntegerError, MapError, Violations};
 use seamstress_io::{ReadError, WriteError};
 use seamstress_quads::QuadFaults;
 use std::path::PathBuf;
@@ -82,6 +82,11 @@ pub(crate) enum Failure {
     )]
     NoManifold { file: PathBuf, faults: QuadFaults },
     #[error(
+        "{}: no certified integer map could be made: {cause}. Nothing was written; {advice}",
+        file.display()
+    )]
+    NoIntegerMap { file: PathBuf, cause: IntegerError, advice: &'static str },
+    #[error(
         "{}: the layout of the field has {text}. Nothing was written.\n\
          Lay it out with `--exact`, or take it as it is with `--allow-flips`",
         file.display()
@@ -127,6 +132,7 @@ impl Failure {
             | Self::Uncertified { .. }
             | Self::Released { .. }
             | Self::Misaligned { .. }
+            | Self::NoIntegerMap { .. }
             | Self::NoPicture { .. }
             | Self::Internal { .. } => Status::NoMap,
             Self::Stopped { .. } => Status::Stopped,

@@ -171,14 +171,18 @@ pub(crate) fn distortion_rows(distortion: &Distortion) -> Vec<String> {
     rows
 }
 
-/// Time and memory, and the stages that took the most.
-pub(crate) fn cost_row(cost: &Cost, components: &[ComponentStats]) -> String {
+/// Names and seconds of all stages.
+pub(crate) fn stages(components: &[ComponentStats]) -> impl Iterator<Item = (&'static str, f64)> {
+    components.iter().flat_map(|c| &c.stages).map(|lap| (lap.stage.name(), lap.seconds))
+}
+
+/// Time and memory, and what the named parts took in all.
+pub(crate) fn cost_row(cost: &Cost, parts: impl Iterator<Item = (&'static str, f64)>) -> String {
     let mut stages: Vec<(&'static str, f64)> = Vec::new();
-    for lap in components.iter().flat_map(|c| &c.stages) {
-        let name = lap.stage.name();
+    for (name, lap) in parts {
         match stages.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, seconds)) => *seconds += lap.seconds,
-            None => stages.push((name, lap.seconds)),
+            Some((_, seconds)) => *seconds += lap,
+            None => stages.push((name, lap)),
         }
     }
     let stages: Vec<String> =

@@ -27,10 +27,7 @@ pub fn invert_spd(matrix: &[f64], n: usize) -> Result<Vec<f64>, NotPositiveDefin
     let llt = Llt::new(matrix, Side::Lower).map_err(|_| NotPositiveDefinite)?;
     let mut inverse = vec![0.0; n * n];
     (0..n).for_each(|k| inverse[k * n + k] = 1.0);
-    llt.solve_in_place_with_conj(
-        Conj::No,
-        MatMut::from_column_major_slice_mut(&mut inverse, n, n),
-    );
+    llt.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut inverse, n, n));
     Ok(inverse)
 }
 

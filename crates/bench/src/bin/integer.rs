@@ -63,8 +63,19 @@ struct Args {
 }
 
 const TITLES: [&str; 13] = [
-    "mesh", "triangles", "cones", "asked", "quads", "off %", "SD", "tau", "integers", "finer",
-    "reduce/round/move/polish s", "map s", "verifier",
+    "mesh",
+    "triangles",
+    "cones",
+    "asked",
+    "quads",
+    "off %",
+    "SD",
+    "tau",
+    "integers",
+    "finer",
+    "reduce/round/move/polish s",
+    "map s",
+    "verifier",
 ];
 
 fn main() -> ExitCode {
@@ -135,7 +146,10 @@ fn seamless(name: &str, mesh: &Mesh, args: &Args) -> Result<(SeamlessMap, f64), 
         let read = read_mesh(path)?;
         let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
         let corners = uvs.corners.iter().map(|&c| uvs.coordinates[c as usize]).collect();
-        return Ok((SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?, 0.0));
+        return Ok((
+            SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?,
+            0.0,
+        ));
     }
     let start = Instant::now();
     let mut go_on = |_| ControlFlow::Continue(());
@@ -156,12 +170,10 @@ struct Row {
 }
 
 fn measure(mesh: &Mesh, map: &SeamlessMap, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
-    let rounding =
-        if args.greedy { IntegerRounding::Greedy } else { IntegerRounding::Constrained };
+    let rounding = if args.greedy { IntegerRounding::Greedy } else { IntegerRounding::Constrained };
     let options = IntegerOptions { size: GridSize::Quads(asked), rounding, ..Default::default() };
     let mut go_on = |_| ControlFlow::Continue(());
-    let solution =
-        to_integer_map(&mesh.connectivity, &mesh.positions, map, &options, &mut go_on)?;
+    let solution = to_integer_map(&mesh.connectivity, &mesh.positions, map, &options, &mut go_on)?;
     let verdict = match &args.verify {
         Some(script) => Some(verify(script, mesh, &solution)?),
         None => None,
@@ -176,7 +188,8 @@ impl Row {
 
     fn cells(&self, name: &str, mesh: &Mesh, map: &SeamlessMap, seconds: f64) -> Vec<String> {
         let solution = &self.solution;
-        let sum = |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
+        let sum =
+            |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
         let (before, after) = (&solution.before, &solution.distortion);
         let parts = [
             sum(|c| c.seconds_reduction),

@@ -1,6 +1,8 @@
 //! Arguments of `map`.
 
-use super::{EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, seconds};
+use super::{
+    ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, seconds,
+};
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use seamstress::{MapOptions, PolishOptions};
 use std::path::PathBuf;
@@ -55,24 +57,8 @@ pub(crate) struct MapArgs {
     #[arg(long)]
     pub(crate) repair: bool,
 
-    /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
-    #[arg(
-        long,
-        value_name = "X",
-        value_parser = not_negative,
-        default_value_t = RoundingOptions::default().cone_bias
-    )]
-    pub(crate) cone_bias: f64,
-
-    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
-    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded
-    #[arg(
-        long,
-        value_name = "X",
-        value_parser = not_negative,
-        default_value_t = MapOptions::default().cone_price
-    )]
-    pub(crate) cone_price: f64,
+    #[command(flatten)]
+    pub(crate) method: ConeArgs,
 
     #[command(flatten)]
     pub(crate) features: FeatureArgs,
@@ -133,14 +119,12 @@ pub(crate) enum Rounding {
 impl MapArgs {
     /// The settings of the method.
     pub(crate) fn options(&self) -> MapOptions {
-        let mut options = MapOptions::default();
-        options.rounding.cone_bias = self.cone_bias;
+        let mut options = self.method.options();
         options.rounding.corner_weight = self.corner_weight;
         options.rounding.strategy = match self.rounding {
             Rounding::ConeBias => RoundingStrategy::ConeBias,
             Rounding::LocalEstimation => RoundingStrategy::LocalEstimation,
         };
-        options.cone_price = self.cone_price;
         options.strict_features = self.features_strict;
         options.polish = (!self.no_tau_polish).then_some(PolishOptions {
             max_energy_rise: self.max_energy_rise,

@@ -4,6 +4,7 @@ mod check;
 mod extract;
 mod features;
 mod field;
+mod integer;
 mod map;
 mod quads;
 mod start;
@@ -13,12 +14,15 @@ pub(crate) use check::CheckArgs;
 pub(crate) use extract::ExtractArgs;
 pub(crate) use features::FeatureArgs;
 pub(crate) use field::FieldArgs;
+pub(crate) use integer::{GridRounding, IntegerArgs};
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
 pub(crate) use start::{Method, StartArgs};
 pub(crate) use texture::TextureArgs;
 
 use clap::{Parser, Subcommand, value_parser};
+use seamstress::MapOptions;
+use seamstress::rounding::RoundingOptions;
 use std::time::Duration;
 
 const EXIT_CODES: &str = "\
@@ -35,6 +39,7 @@ Examples:
   seamstress map bunny.ply -o bunny.obj
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress integer bunny.ply --quads 5000 -o grid.obj
   seamstress check bunny.ply
   seamstress check bunny.ply bunny.obj
   seamstress extract integer.obj -o quads.obj";
@@ -47,9 +52,9 @@ Examples:
 /// meshing and seamless textures start from such a map.
 ///
 /// `map` makes a map and certifies it: no triangle is flipped or collapsed, every seam fits, and the
-/// angle at every cone is a multiple of 90 degrees. `check` lists what is wrong with a mesh, or
-/// certifies the map in a file, whatever program wrote it. `extract` turns an integer map into a quad
-/// mesh.
+/// angle at every cone is a multiple of 90 degrees. `integer` makes a map whose unit squares close up
+/// over the surface, and `extract` turns such a map into a quad mesh. `check` lists what is wrong with
+/// a mesh, or certifies the map in a file, whatever program wrote it.
 #[derive(Debug, Parser)]
 #[command(
     name = "seamstress",
@@ -65,6 +70,7 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Map(MapArgs),
+    Integer(IntegerArgs),
     Check(CheckArgs),
     Extract(ExtractArgs),
     Field(FieldArgs),
@@ -90,6 +96,39 @@ pub(crate) struct RunArgs {
     /// Print no summary, progress, notes or warnings, only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+/// How many cones a seamless map gets.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub(crate) struct ConeArgs {
+    /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = RoundingOptions::default().cone_bias
+    )]
+    pub(crate) cone_bias: f64,
+
+    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
+    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded
+    #[arg(
+        long,
+        value_name = "X",
+        value_parser = not_negative,
+        default_value_t = MapOptions::default().cone_price
+    )]
+    pub(crate) cone_price: f64,
+}
+
+impl ConeArgs {
+    /// The settings of the method, with the defaults for all others.
+    pub(crate) fn options(&self) -> MapOptions {
+        let mut options = MapOptions::default();
+        options.rounding.cone_bias = self.cone_bias;
+        options.cone_price = self.cone_price;
+        options
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

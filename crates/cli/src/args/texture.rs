@@ -47,7 +47,7 @@ fn finite(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number".into())
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     match finite(text) {
         Ok(x) if x > 0.0 => Ok(x),
         _ => Err("expected a number larger than 0".into()),

@@ -5,9 +5,7 @@ use super::certificate::IntegerMap;
 use super::connections::{Connection, connections};
 use super::gauss::{Gauss, Overflow};
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{
-    Constraint, Rounded, RoundingProblem, round_constrained, round_greedily,
-};
+use super::rounding::{Constraint, Rounded, RoundingProblem, round_constrained, round_greedily};
 use super::snap::snap;
 use super::space::IntegerSpace;
 use super::{IntegerOptions, IntegerRounding};
@@ -282,8 +280,7 @@ impl<'a> IntegerProblem<'a> {
                 stats.seconds_moving += clock.elapsed().as_secs_f64();
                 (y, stats.moves) = arrived?;
                 let clock = Instant::now();
-                let polished =
-                    minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
+                let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
                 stats.seconds_polish += clock.elapsed().as_secs_f64();
                 stats.polish = polished.iterations;
                 y = polished.y;
@@ -357,7 +354,8 @@ impl<'a> IntegerProblem<'a> {
             z.iter().map(part).fold(start, pick) / h
         };
         let (re, im) = (|z: &Complex64| z.re, |z: &Complex64| z.im);
-        let [left, bottom] = [re, im].map(|part| bound(f64::INFINITY, f64::min, part).floor() as i64);
+        let [left, bottom] =
+            [re, im].map(|part| bound(f64::INFINITY, f64::min, part).floor() as i64);
         let right = bound(f64::NEG_INFINITY, f64::max, re).ceil() as i64;
         let shift = Gauss { re: column, im: 0 }.plus(Gauss { re: left, im: bottom }.negated())?;
         let z = snap(&self.space, variables, &x, shift)?;

@@ -121,11 +121,8 @@ impl Conditional {
     fn add_condition(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {
         let mut full = vec![0; self.mean.len()];
         row.iter().for_each(|&(k, c)| full[k] = c);
-        let known: i64 = self
-            .conditions
-            .iter()
-            .map(|c| full[c.pivot] * c.row[c.pivot] * c.value)
-            .sum();
+        let known: i64 =
+            self.conditions.iter().map(|c| full[c.pivot] * c.row[c.pivot] * c.value).sum();
         let added = Condition { row: reduced, pivot, value: value - known };
         for condition in &mut self.conditions {
             let factor = condition.row[pivot] * added.row[pivot];

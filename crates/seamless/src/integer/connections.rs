@@ -59,7 +59,8 @@ pub fn connections(
             connections.push(Connection { length: sight.length, displacement });
         }
     }
-    connections.sort_by(|a, b| a.displacement.cmp(&b.displacement).then(a.length.total_cmp(&b.length)));
+    connections
+        .sort_by(|a, b| a.displacement.cmp(&b.displacement).then(a.length.total_cmp(&b.length)));
     connections.dedup_by(|b, a| a.displacement == b.displacement);
     connections
         .sort_by(|a, b| a.length.total_cmp(&b.length).then(a.displacement.cmp(&b.displacement)));
@@ -105,8 +106,7 @@ impl Sight {
                 let t = Form::from([(chain, Gauss::ONE)]);
                 // A point q beyond the seam is at i^-r (q - t), from its left side; from the right,
                 // the chain's own translation leads back.
-                let factor =
-                    if along { Gauss::unit(after).negated() } else { Gauss::unit(turns) };
+                let factor = if along { Gauss::unit(after).negated() } else { Gauss::unit(turns) };
                 add_scaled(&mut form, &t, factor)?;
                 turns = after;
             }
@@ -175,11 +175,13 @@ impl Search<'_> {
         crossed: &[Halfedge],
         stack: &mut Vec<Beam>,
     ) {
-        let turns =
-            if self.cut.is_seam[beam.edge] { beam.turns - self.matching[beam.edge] } else { beam.turns };
-        let placed = |corner: Halfedge| {
-            beam.right_end + turn(self.z[corner] - self.z[t.next()], turns)
+        let turns = if self.cut.is_seam[beam.edge] {
+            beam.turns - self.matching[beam.edge]
+        } else {
+            beam.turns
         };
+        let placed =
+            |corner: Halfedge| beam.right_end + turn(self.z[corner] - self.z[t.next()], turns);
         let (apex, left_end) = (placed(t.prev()), placed(t));
         let [of_right, of_left] =
             [beam.right, beam.left].map(|direction| (direction.conj() * apex).im);

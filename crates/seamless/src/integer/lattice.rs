@@ -139,9 +139,8 @@ impl Elimination {
         let candidates = self.alive.iter().flat_map(|&k| {
             let relation = &self.relations[k];
             let units = relation.iter().filter(|(_, c)| c.is_unit());
-            units.map(move |(&v, _)| {
-                ((relation.len() - 1) * (self.occurrences[&v].len() - 1), k, v)
-            })
+            units
+                .map(move |(&v, _)| ((relation.len() - 1) * (self.occurrences[&v].len() - 1), k, v))
         });
         candidates.min().map(|(_, k, v)| (k, v))
     }
@@ -203,7 +202,11 @@ impl Elimination {
             add_scaled(relation, &value, c)?;
             for v in value.keys() {
                 let uses = self.occurrences.entry(*v).or_default();
-                if self.relations[k].contains_key(v) { uses.insert(k) } else { uses.remove(&k) };
+                if self.relations[k].contains_key(v) {
+                    uses.insert(k)
+                } else {
+                    uses.remove(&k)
+                };
             }
         }
         self.substitutions.push(Substitution { variable, value });
@@ -263,9 +266,8 @@ mod tests {
     fn check(n: usize, relations: &[Form], pinned: Option<u32>) -> Lattice {
         let lattice = Lattice::new(n, relations, pinned).unwrap();
         let side = 2i64;
-        let values: Vec<Gauss> = (-side..=side)
-            .flat_map(|re| (-side..=side).map(move |im| Gauss { re, im }))
-            .collect();
+        let values: Vec<Gauss> =
+            (-side..=side).flat_map(|re| (-side..=side).map(move |im| Gauss { re, im })).collect();
         let (mut solutions, total) = (0, values.len().pow(n as u32));
         for code in 0..total {
             let x: Vec<Gauss> =
@@ -301,7 +303,8 @@ mod tests {
 
     #[test]
     fn pinned_variables_are_zero() {
-        let relations = [form(&[(0, 1, 0), (1, 1, -1), (2, 0, 1)]), form(&[(1, 0, 2), (2, -1, -1)])];
+        let relations =
+            [form(&[(0, 1, 0), (1, 1, -1), (2, 0, 1)]), form(&[(1, 0, 2), (2, -1, -1)])];
         assert_eq!(check(3, &relations, Some(0)).rank(), 1);
     }
 

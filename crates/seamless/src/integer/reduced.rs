@@ -41,7 +41,8 @@ fn couplings(problem: &LayoutProblem) -> impl Iterator<Item = (usize, usize, f64
     let n_free = problem.n_free();
     let (pattern, values) = problem.matrix();
     (0..pattern.order()).flat_map(move |column| {
-        let slots = pattern.column_offsets[column] as usize..pattern.column_offsets[column + 1] as usize;
+        let slots =
+            pattern.column_offsets[column] as usize..pattern.column_offsets[column + 1] as usize;
         slots
             .map(move |k| (pattern.rows[k] as usize, column, values[k]))
             .filter(move |(row, _, _)| *row >= n_free)
@@ -102,7 +103,8 @@ pub fn schur_complement(
                     }
                 }
                 cross.iter().for_each(|&(row, column, v)| response[row - n_free] -= v * x[column]);
-                let project = |c: &SparseColumn| c.iter().map(|&(k, b)| b * response[k]).sum::<f64>();
+                let project =
+                    |c: &SparseColumn| c.iter().map(|&(k, b)| b * response[k]).sum::<f64>();
                 block.extend(columns.iter().map(project));
             }
             Ok(block)

@@ -24,7 +24,9 @@ impl Constraint {
         for (&k, &c) in &connection.displacement {
             let k = 2 * k as usize;
             let [re, im] = &mut rows;
-            for (row, column, x) in [(0, k, c.re), (0, k + 1, -c.im), (1, k, c.im), (1, k + 1, c.re)] {
+            for (row, column, x) in
+                [(0, k, c.re), (0, k + 1, -c.im), (1, k, c.im), (1, k + 1, c.re)]
+            {
                 if x != 0 {
                     let row = if row == 0 { &mut *re } else { &mut *im };
                     row.push((column, x));
@@ -106,7 +108,8 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     let mut best: Option<(usize, f64, Vec<i64>)> = None;
     let mut restarts = 0;
     loop {
-        let (conditional, conflicts) = fix_connections(&problem.constraints, start.clone(), &priority);
+        let (conditional, conflicts) =
+            fix_connections(&problem.constraints, start.clone(), &priority);
         let x = improve(problem, conditional.round_rest());
         let violated = violations(problem, &x);
         let key = (violated.len(), energy(&problem.matrix, &problem.mean, &x));

@@ -138,18 +138,15 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        let order = |a: &(f64, [Move; 2]), b: &(f64, [Move; 2])| {
-            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-        };
+        let order =
+            |a: &(f64, [Move; 2]), b: &(f64, [Move; 2])| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if pairs.len() > TRIED {
             pairs.select_nth_unstable_by(TRIED, order);
             pairs.truncate(TRIED);
         }
         pairs.sort_by(order);
         let worth = pairs.into_iter().filter(|(cost, moves)| self.is_better(*cost, moves));
-        worth
-            .min_by_key(|(_, moves)| self.violated_after(moves))
-            .map(|(_, moves)| moves.to_vec())
+        worth.min_by_key(|(_, moves)| self.violated_after(moves)).map(|(_, moves)| moves.to_vec())
     }
 
     fn apply(&mut self, moves: &[Move]) {
@@ -160,12 +157,10 @@ impl<'a> Search<'a> {
             self.gradient.iter_mut().zip(row).for_each(|(g, p)| *g += scale * p);
             for &(i, [u, v]) in &self.moved[k] {
                 self.values[i] = [self.values[i][0] + step * u, self.values[i][1] + step * v];
-                let allowed =
-                    self.problem.constraints[i].allows(self.values[i].map(|x| x as f64));
+                let allowed = self.problem.constraints[i].allows(self.values[i].map(|x| x as f64));
                 self.is_violated[i] = !allowed;
             }
         }
         self.violated = self.is_violated.iter().filter(|v| **v).count();
     }
 }
-

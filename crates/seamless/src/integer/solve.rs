@@ -54,7 +54,9 @@ pub enum IntegerError {
     #[error("the size of the grid is not a positive number")]
     BadSize,
     /// Positions or UVs do not fit the mesh.
-    #[error("{positions} positions and {corners} corners of UVs for a mesh of {vertices} vertices and {faces} faces")]
+    #[error(
+        "{positions} positions and {corners} corners of UVs for a mesh of {vertices} vertices and {faces} faces"
+    )]
     Mismatch {
         /// Positions given.
         positions: usize,

@@ -242,8 +242,8 @@ impl LayoutProblem {
             }
         };
         let diagonal = pattern.diagonal();
-        let mean =
-            diagonal.iter().map(|&k| values[k as usize]).sum::<f64>() / diagonal.len().max(1) as f64;
+        let mean = diagonal.iter().map(|&k| values[k as usize]).sum::<f64>()
+            / diagonal.len().max(1) as f64;
         let mut shift = shift * mean;
         for _ in 0..8 {
             for &k in diagonal {

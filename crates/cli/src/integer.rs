@@ -1,0 +1,268 @@
+//! `seamstress integer`.
+
+use crate::args::{GridRounding, IntegerArgs, TextureArgs};
+use crate::input::LoadedMesh;
+use crate::job::{Job, Worker};
+use crate::map_file::MapFile;
+use crate::outcome::{Failure, Status};
+use crate::output::{Kind, Plan, Target};
+use crate::pictures;
+use crate::report::{self, Cost, VERSION};
+use crate::summary;
+use crate::text::{self, counted, figure, row};
+use seamstress::integer::IntegerStats;
+use seamstress::map::compare_source;
+use seamstress::{
+    GridSize, IntegerError, IntegerSolution, MapError, SeamlessMap, Violations, make_map,
+    to_integer_map,
+};
+use seamstress_io::{MapObj, write_map_obj};
+use seamstress_surface::TriMesh;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::Path;
+
+/// The work done, and nothing written yet.
+struct Product {
+    mesh: LoadedMesh,
+    solution: IntegerSolution,
+    pictures: Option<[Vec<u8>; 3]>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &IntegerArgs) -> Result<Status, Failure> {
+    let job = Job::new(&args.run, &args.mesh)?;
+    let plan = plan(args)?;
+    let owned = args.clone();
+    let product = job.run(move |worker| make(&owned, worker))?;
+    finish(args, &job, &plan, &product)?;
+    Ok(Status::Done)
+}
+
+/// The outputs; the map last, since it says that the rest is there.
+fn plan(args: &IntegerArgs) -> Result<Plan, Failure> {
+    let mut targets = Vec::new();
+    if let Some(folder) = &args.pictures {
+        targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
+    }
+    targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
+    targets.push(Target::new(Kind::Map, &args.output));
+    let inputs: Vec<&Path> =
+        std::iter::once(&args.mesh).chain(&args.map).map(AsRef::as_ref).collect();
+    Plan::new(&inputs, args.pictures.as_deref(), targets)
+}
+
+/// The part of the command that may take long.
+fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
+    let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
+    if !args.run.quiet {
+        mesh.tell_findings();
+    }
+    let connectivity = mesh.connect()?;
+    let map = match &args.map {
+        Some(path) => read_map(args, path, &mesh, &connectivity)?,
+        None => make_seamless(args, &mesh, &connectivity, &mut worker)?,
+    };
+    let positions = &mesh.soup.positions;
+    let made = to_integer_map(&connectivity, positions, &map, &args.options(), &mut |progress| {
+        worker.observe(progress)
+    });
+    let solution = made.map_err(|cause| {
+        let file = mesh.path.clone();
+        match (cause, worker.stop.reason()) {
+            (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+            (cause, _) => Failure::NoIntegerMap { file, cause, advice: advice(args) },
+        }
+    })?;
+    worker.stop.lift_limit();
+    // One check per quad, unless told otherwise.
+    let texture = TextureArgs { period: args.texture.period.or(Some(1.0)), ..args.texture };
+    let pictures = match &args.pictures {
+        Some(_) => Some(pictures::draw(&mesh.soup, solution.map.seamless(), &texture)),
+        None => None,
+    };
+    let pictures = pictures
+        .transpose()
+        .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
+    Ok(Product { mesh, solution, pictures })
+}
+
+fn advice(args: &IntegerArgs) -> &'static str {
+    match args.rounding {
+        GridRounding::Constrained => "try a finer grid, or fewer cones with a larger `--cone-bias`",
+        GridRounding::Greedy => {
+            "greedy rounding is for comparison; leave out `--rounding greedy`, or try a finer grid"
+        }
+    }
+}
+
+/// The seamless map in a file, which must be one of this mesh.
+fn read_map(
+    args: &IntegerArgs,
+    path: &Path,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+) -> Result<SeamlessMap, Failure> {
+    let map = MapFile::read(path)?;
+    let bad = |violations: Violations| Failure::BadMap {
+        file: path.to_owned(),
+        text: format!("not a seamless map of {}: {violations}", mesh.path.display()),
+    };
+    let soup = &mesh.soup;
+    let differences =
+        compare_source((&soup.positions, &soup.faces), (&map.soup.positions, &map.soup.faces));
+    if !differences.is_empty() {
+        return Err(bad(Violations(differences)));
+    }
+    SeamlessMap::certify(connectivity, map.corner_uvs, &args.options().tolerance).map_err(bad)
+}
+
+fn make_seamless(
+    args: &IntegerArgs,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+    worker: &mut Worker,
+) -> Result<SeamlessMap, Failure> {
+    let (positions, options) = (&mesh.soup.positions, args.method.options());
+    let made =
+        make_map(connectivity, positions, &options, &mut |progress| worker.observe(progress));
+    let solution = made.map_err(|cause| {
+        let file = mesh.path.clone();
+        match (cause, worker.stop.reason()) {
+            (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+            (cause, _) => Failure::NoMap { file, cause },
+        }
+    })?;
+    Ok(solution.map)
+}
+
+/// Writes everything, puts it in place and prints the summary.
+fn finish(args: &IntegerArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(), Failure> {
+    let mut batch = plan.begin()?;
+    let cost = job.cost();
+    let mut pictures = product.pictures.iter().flatten();
+    let report = report::to_text(&report_json(args, plan, product, cost));
+    for target in &plan.targets {
+        batch.write(&target.path, |file| match target.kind {
+            Kind::Report => writeln!(file, "{report}"),
+            Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),
+            _ => write_map(file, args, product),
+        })?;
+    }
+    job.still_wanted()?;
+    batch.commit()?;
+    if args.run.json {
+        text::print(&report)?;
+    } else if !args.run.quiet {
+        text::print(&summary_text(args, plan, product, &cost))?;
+    }
+    Ok(())
+}
+
+fn report_json(args: &IntegerArgs, plan: &Plan, product: &Product, cost: Cost) -> Value {
+    let solution = &product.solution;
+    let options = args.options();
+    let mut value = json!({
+        "seamstress": VERSION,
+        "command": "integer",
+        "options": {
+            "size": options.size,
+            "rounding": options.rounding,
+            "repair": args.repair,
+            "cone_bias": args.method.cone_bias,
+            "cone_price": args.method.cone_price,
+            "tolerance": options.tolerance.seam,
+            "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
+            "threads": args.run.threads,
+        },
+        "input": report::input_json(&product.mesh),
+        "seamless_map": args.map.as_ref().map(|path| path.to_string_lossy()),
+        "grid": {
+            "requested": options.size,
+            "quads": solution.quads(),
+            "edge_length": solution.cell,
+            "scale": 1.0 / solution.cell,
+            "refinements": solution.refinements(),
+            "sizes_tried": solution.sizes_tried,
+        },
+        "components": solution.components,
+        "distortion_before": report::distortion_json(&solution.before),
+        "integer_certificate": solution.map.certificate(),
+        "files": plan.targets,
+        "cost": cost,
+    });
+    let map = report::map_json(solution.map.seamless(), &solution.distortion);
+    if let (Value::Object(all), Value::Object(map)) = (&mut value, map) {
+        all.extend(map);
+    }
+    value
+}
+
+fn write_map(file: &mut impl Write, args: &IntegerArgs, product: &Product) -> std::io::Result<()> {
+    let solution = &product.solution;
+    let name = args.mesh.file_name().unwrap_or(args.mesh.as_os_str());
+    let comments = [
+        format!("Integer map by Seamstress {VERSION}: one quad per unit square"),
+        format!("Source: {}", name.display()),
+        grid_text(args, solution),
+    ];
+    let map = MapObj {
+        positions: &product.mesh.soup.positions,
+        faces: &product.mesh.soup.faces,
+        corner_uvs: solution.map.corner_uvs(),
+        comments: &comments,
+    };
+    write_map_obj(file, &map)
+}
+
+/// What was asked for, and what came out.
+fn grid_text(args: &IntegerArgs, solution: &IntegerSolution) -> String {
+    let asked = match args.options().size {
+        GridSize::Quads(quads) => format!("{quads} quads"),
+        GridSize::EdgeLength(length) => format!("edge length {}", figure(length)),
+        GridSize::Scale(scale) => format!("scale {}", figure(scale)),
+    };
+    let mut text = format!("{:.1} quads, asked for {asked}", solution.quads());
+    if solution.refinements() > 0 {
+        text +=
+            &format!("; {} finer where cones are close", counted(solution.refinements(), "time"));
+    }
+    text
+}
+
+fn summary_text(args: &IntegerArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
+    let solution = &product.solution;
+    let mut rows = summary::mesh_rows(&product.mesh);
+    rows.push(row("grid", &grid_text(args, solution)));
+    rows.extend(summary::map_rows(solution.map.seamless(), &solution.distortion));
+    let before = &solution.before;
+    rows.push(row(
+        "seamless map",
+        &format!(
+            "tau {}, symmetric Dirichlet {}",
+            figure(report::tau(before)),
+            figure(before.symmetric_dirichlet)
+        ),
+    ));
+    let certificate = solution.map.certificate();
+    rows.push(row(
+        "integers",
+        &format!(
+            "exact across {}, at {}",
+            counted(certificate.exact_edges, "edge"),
+            counted(certificate.integral_cones, "cone")
+        ),
+    ));
+    let sum = |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
+    let parts = [
+        ("reduction", sum(|c| c.seconds_reduction)),
+        ("rounding", sum(|c| c.seconds_rounding)),
+        ("way", sum(|c| c.seconds_moving)),
+        ("polish", sum(|c| c.seconds_polish)),
+    ];
+    rows.push(summary::cost_row(cost, parts.into_iter()));
+    let names: Vec<String> =
+        plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
+    rows.push(row("written", &names.join(", ")));
+    rows.join("\n")
+}
