@@ -8,5 +8,6 @@ mod failures;
 mod features;
 mod fields;
 mod harness;
+mod integer;
 mod map;
 mod quads;

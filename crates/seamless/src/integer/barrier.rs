@@ -22,55 +22,49 @@ const MOST_TINY_MOVES: usize = 6;
 const SMALLEST_MOVE: f64 = 1e-6;
 const SHIFT: f64 = 1e-8;
 
-/// Why the integral part did not arrive.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Blocked {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// Triangles would collapse on the way.
-    #[error("stopped at {reached:.2} of the way to the integers, where triangles collapse")]
-    Stuck {
-        /// Share of the way.
-        reached: f64,
-    },
+/// How far the integral part came.
+#[derive(Debug, Clone)]
+pub struct Advance {
+    /// The unknowns there, flip-free.
+    pub y: Vec<f64>,
+    /// Share of the way; 1 is the target, to the last bit.
+    pub reached: f64,
+    /// Number of moves.
+    pub moves: usize,
 }
 
-/// Moves the held unknowns to `target`, the free ones along with them; returns the unknowns and the number
-/// of moves.
+/// Moves the held unknowns to `target`, the free ones along with them, as far as triangles let them.
 ///
 /// Each move is the Newton step of the symmetric Dirichlet energy under the condition that the held part
 /// goes all the way, `H_xx dx = -(g + H d)_x`, cut short of the first collapse and where the energy
 /// would rise too much; after a short one, Newton steps centre the rest.
 ///
 /// # Errors
-/// [`Blocked`].
+/// [`Cancelled`].
 pub fn advance(
     problem: &mut LayoutProblem,
     mut y: Vec<f64>,
     target: &[f64],
     watch: &mut Watch<'_, '_>,
-) -> Result<(Vec<f64>, usize), Blocked> {
+) -> Result<Advance, Cancelled> {
     let n_free = problem.n_free();
-    let (mut rest, mut tiny) = (1.0, 0);
-    for moves in 1..=MOST_MOVES {
+    let (mut rest, mut tiny, mut moves) = (1.0, 0, 0);
+    while moves < MOST_MOVES && tiny < MOST_TINY_MOVES {
         watch.pulse()?;
         let Some(taken) = advance_once(problem, &mut y, target) else { break };
+        moves += 1;
         rest *= 1.0 - taken;
         if taken == 1.0 {
             // To the last bit.
             y[n_free..].copy_from_slice(target);
-            return Ok((y, moves));
+            break;
         }
         if taken < SHORT_MOVE {
             y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
         }
         tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
-        if tiny == MOST_TINY_MOVES {
-            break;
-        }
     }
-    Err(Blocked::Stuck { reached: 1.0 - rest })
+    Ok(Advance { y, reached: 1.0 - rest, moves })
 }
 
 /// One move; the share of the rest of the way that was taken.

@@ -1,6 +1,6 @@
 //! An integer map of one connected mesh.
 
-use super::barrier::{Blocked, advance};
+use super::barrier::advance;
 use super::certificate::IntegerMap;
 use super::connections::{Connection, connections};
 use super::gauss::{Gauss, Overflow};
@@ -24,6 +24,10 @@ use std::time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;
+/// Connections that block the way are looked for up to this length, grid units.
+const LEARNING_RADIUS: f64 = 1.5;
+/// Times a blocked way is learned from before the grid is made finer.
+const MOST_LESSONS: i32 = 6;
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried.
@@ -64,15 +68,6 @@ pub enum IntegerFailure {
     Uncertified(#[from] Violations),
 }
 
-impl From<Blocked> for IntegerFailure {
-    fn from(blocked: Blocked) -> Self {
-        match blocked {
-            Blocked::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            Blocked::Stuck { reached } => Self::Blocked { reached },
-        }
-    }
-}
-
 impl IntegerFailure {
     /// Whether a finer grid may help.
     fn asks_for_finer_grid(&self) -> bool {
@@ -92,6 +87,8 @@ pub struct IntegerStats {
     pub constraints: usize,
     /// Times the rounding started over with other priorities.
     pub restarts: usize,
+    /// Connections that were constrained because they blocked the way.
+    pub learned: usize,
     /// Moves that carried the layout to the integers.
     pub moves: usize,
     /// Newton iterations after that.
@@ -139,6 +136,8 @@ pub(super) struct IntegerProblem<'a> {
     matrix: Dense,
     /// Connections up to a radius.
     near: (f64, Vec<Connection>),
+    /// Connections that blocked the way before, and the coordinates of the layout they were found in.
+    learned: Vec<(Connection, Vec<f64>)>,
     /// Mesh length of a mean edge.
     unit: f64,
     seconds: f64,
@@ -195,6 +194,7 @@ impl<'a> IntegerProblem<'a> {
             zeta,
             matrix,
             near,
+            learned: Vec::new(),
             unit,
             seconds,
         })
@@ -255,41 +255,15 @@ impl<'a> IntegerProblem<'a> {
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
-        watch.tick(0.1)?;
-        let clock = Instant::now();
-        let rounding = self.rounding_problem(h)?;
-        stats.constraints = rounding.constraints.len();
-        let rounded = match self.options.rounding {
-            IntegerRounding::Constrained => round_constrained(&rounding)?,
-            IntegerRounding::Greedy => round_greedily(&rounding)?,
-        };
-        stats.restarts += rounded.restarts;
-        let variables = self.integers(&rounded)?;
-        stats.seconds_rounding += clock.elapsed().as_secs_f64();
-        watch.tick(0.4)?;
-        let clock = Instant::now();
-        let target: Vec<f64> =
-            flat(&variables.iter().map(|x| x.to_complex() * h).collect::<Vec<_>>());
-        let mut y;
-        match self.options.rounding {
-            IntegerRounding::Constrained => {
-                if rounded.violated > 0 {
-                    return Err(IntegerFailure::Conflict { violated: rounded.violated });
-                }
-                let arrived = advance(&mut self.problem, self.y.clone(), &target, watch);
-                stats.seconds_moving += clock.elapsed().as_secs_f64();
-                (y, stats.moves) = arrived?;
-                let clock = Instant::now();
-                let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
-                stats.seconds_polish += clock.elapsed().as_secs_f64();
-                stats.polish = polished.iterations;
-                y = polished.y;
-            }
+        let (variables, y) = match self.options.rounding {
+            IntegerRounding::Constrained => self.round_and_move(h, stats, watch)?,
             IntegerRounding::Greedy => {
-                y = self.follow(&target);
-                stats.seconds_moving += clock.elapsed().as_secs_f64();
+                let rounding = self.rounding_problem(h)?;
+                let variables = self.integers(&round_greedily(&rounding)?)?;
+                let y = self.follow(&in_layout(&variables, h));
+                (variables, y)
             }
-        }
+        };
         let (corner_uvs, columns) = self.corner_uvs(&variables, &y, h, column)?;
         let tolerance = &self.options.tolerance;
         let map = IntegerMap::certify(self.mesh, corner_uvs, tolerance)?;
@@ -297,24 +271,81 @@ impl<'a> IntegerProblem<'a> {
         Ok((map.corner_uvs().to_vec(), columns))
     }
 
+    /// Rounds and moves there; where the way is blocked, rounds again with the connections that collapse
+    /// there constrained as well.
+    fn round_and_move(
+        &mut self,
+        h: f64,
+        stats: &mut IntegerStats,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(Vec<Gauss>, Vec<f64>), IntegerFailure> {
+        for lesson in 0.. {
+            watch.tick(f64::from(lesson) / f64::from(MOST_LESSONS + 1))?;
+            let clock = Instant::now();
+            let rounding = self.rounding_problem(h)?;
+            let rounded = round_constrained(&rounding)?;
+            let variables = self.integers(&rounded)?;
+            stats.constraints = rounding.constraints.len();
+            stats.restarts += rounded.restarts;
+            stats.seconds_rounding += clock.elapsed().as_secs_f64();
+            if rounded.violated > 0 {
+                return Err(IntegerFailure::Conflict { violated: rounded.violated });
+            }
+            let clock = Instant::now();
+            let target = in_layout(&variables, h);
+            let advance = advance(&mut self.problem, self.y.clone(), &target, watch)?;
+            stats.seconds_moving += clock.elapsed().as_secs_f64();
+            stats.moves = advance.moves;
+            let reached = advance.reached;
+            if reached == 1.0 {
+                let clock = Instant::now();
+                let y = advance.y;
+                let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
+                stats.seconds_polish += clock.elapsed().as_secs_f64();
+                stats.polish = polished.iterations;
+                return Ok((variables, polished.y));
+            }
+            let learned = self.learn(&advance.y, &rounded, h)?;
+            stats.learned += learned;
+            if learned == 0 || lesson == MOST_LESSONS {
+                return Err(IntegerFailure::Blocked { reached });
+            }
+        }
+        Err(IntegerFailure::Blocked { reached: 0.0 })
+    }
+
+    /// Notes the connections that are short where the way is blocked and that the integers would collapse
+    /// or turn around; how many are new.
+    fn learn(&mut self, y: &[f64], rounded: &Rounded, h: f64) -> Result<usize, Overflow> {
+        let z = self.problem.space().expand(y);
+        let held = y[self.problem.n_free()..].chunks(2);
+        let variables: Vec<Complex64> = held.map(|p| Complex64::new(p[0], p[1])).collect();
+        let from = flat(&self.space.coordinates(&variables));
+        let before = self.learned.len();
+        for connection in self.connections(&z, LEARNING_RADIUS * h)? {
+            let constraint = Constraint::new(&connection, &from, h);
+            if !constraint.holds(&rounded.x) {
+                self.learned.push((connection, from.clone()));
+            }
+        }
+        Ok(self.learned.len() - before)
+    }
+
+    fn connections(&self, z: &[Complex64], radius: f64) -> Result<Vec<Connection>, Overflow> {
+        connections(self.mesh, &self.cut, &self.matching, &self.is_cone, &self.space, z, radius)
+    }
+
     fn rounding_problem(&mut self, h: f64) -> Result<RoundingProblem, Overflow> {
         let radius = CONSTRAINED_LENGTH * h;
         if radius > self.near.0 {
             let z = self.problem.space().expand(&self.y);
-            let found = connections(
-                self.mesh,
-                &self.cut,
-                &self.matching,
-                &self.is_cone,
-                &self.space,
-                &z,
-                radius,
-            )?;
-            self.near = (radius, found);
+            self.near = (radius, self.connections(&z, radius)?);
         }
         let mean: Vec<f64> = self.zeta.iter().map(|x| x / h).collect();
         let short = self.near.1.iter().filter(|c| c.length < radius);
-        let constraints = short.map(|c| Constraint::new(c, &mean, h)).collect();
+        let near = short.map(|c| Constraint::new(c, &self.zeta, h));
+        let learned = self.learned.iter().map(|(c, from)| Constraint::new(c, from, h));
+        let constraints = near.chain(learned).collect();
         Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints })
     }
 
@@ -362,6 +393,11 @@ impl<'a> IntegerProblem<'a> {
         let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
         Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
     }
+}
+
+/// Integral variables in the units of the layout, real and imaginary parts by turns.
+fn in_layout(variables: &[Gauss], h: f64) -> Vec<f64> {
+    flat(&variables.iter().map(|x| x.to_complex() * h).collect::<Vec<_>>())
 }
 
 /// Scaled to a mean diagonal of one.

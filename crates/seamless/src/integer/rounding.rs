@@ -11,15 +11,16 @@ use seamstress_numerics::NotPositiveDefinite;
 pub struct Constraint {
     /// Real and imaginary part of the displacement.
     pub rows: [Row; 2],
-    /// The displacement in the seamless map, grid units.
+    /// The displacement where the connection was found, grid units.
     pub start: [f64; 2],
-    /// Length of the connection in the seamless map, grid units.
+    /// Length of the connection there, grid units.
     pub length: f64,
 }
 
 impl Constraint {
-    /// From a connection, for coordinates `mean` in grid units and grid size `h`.
-    pub fn new(connection: &Connection, mean: &[f64], h: f64) -> Self {
+    /// From a connection, for coordinates `from` of the layout where it was found and grid size `h`, both
+    /// in the layout's units.
+    pub fn new(connection: &Connection, from: &[f64], h: f64) -> Self {
         let mut rows = [Row::new(), Row::new()];
         for (&k, &c) in &connection.displacement {
             let k = 2 * k as usize;
@@ -33,7 +34,7 @@ impl Constraint {
                 }
             }
         }
-        let start = [apply(&rows[0], mean), apply(&rows[1], mean)];
+        let start = [apply(&rows[0], from) / h, apply(&rows[1], from) / h];
         Self { rows, start, length: connection.length / h }
     }
 
@@ -300,5 +301,75 @@ impl<'a> Fixing<'a> {
         values.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)).then(a.cmp(&b)));
         values.truncate(TRIED);
         values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integer::conditional::energy;
+    use crate::integer::gauss::Gauss;
+
+    /// A positive definite matrix and a mean of two Gaussian integers, from a seed.
+    fn problem(seed: u64) -> RoundingProblem {
+        let mut rng = seamstress_testkit::Rng::new(seed);
+        let factor: Vec<f64> = (0..16).map(|_| rng.unit() - 0.5).collect();
+        let entry = |i: usize, j: usize| {
+            let product: f64 = (0..4).map(|k| factor[4 * i + k] * factor[4 * j + k]).sum();
+            product + if i == j { 0.3 } else { 0.0 }
+        };
+        let values = (0..16).map(|k| entry(k / 4, k % 4)).collect();
+        let mean: Vec<f64> = (0..4).map(|_| 3.0 * (rng.unit() - 0.5)).collect();
+        let connection = |displacement: &[(u32, i64, i64)]| Connection {
+            length: 0.5,
+            displacement: displacement.iter().map(|&(k, re, im)| (k, Gauss { re, im })).collect(),
+        };
+        let connections = [connection(&[(0, 1, 0)]), connection(&[(0, 1, 0), (1, 0, -1)])];
+        let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
+        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints }
+    }
+
+    /// The best integer point within four of the mean that satisfies the constraints.
+    fn brute_force(problem: &RoundingProblem) -> f64 {
+        let mut best = f64::INFINITY;
+        for code in 0..9i64.pow(4) {
+            let digit = |k: u32| code / 9i64.pow(k) % 9 - 4;
+            let x: Vec<i64> =
+                (0..4).map(|k| problem.mean[k as usize].round() as i64 + digit(k)).collect();
+            if problem.constraints.iter().all(|c| c.holds(&x)) {
+                best = best.min(energy(&problem.matrix, &problem.mean, &x));
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn close_to_the_best_of_all_integer_points() {
+        let (mut exact, cases) = (0, 60);
+        for seed in 0..cases {
+            let problem = problem(seed);
+            let rounded = round_constrained(&problem).unwrap();
+            assert_eq!(rounded.violated, 0, "seed {seed}");
+            assert!(problem.constraints.iter().all(|c| c.holds(&rounded.x)), "seed {seed}");
+            let (found, best) =
+                (energy(&problem.matrix, &problem.mean, &rounded.x), brute_force(&problem));
+            assert!(found >= best - 1e-12);
+            assert!(found <= 2.0 * best + 1e-12, "seed {seed}: {found} against {best}");
+            exact += usize::from(found <= best + 1e-9);
+        }
+        assert!(10 * exact >= 8 * cases as usize, "{exact} of {cases} are the best");
+    }
+
+    #[test]
+    fn greedy_pays_no_heed_to_connections() {
+        let mut problem = problem(1);
+        problem.mean = vec![0.2, 0.1, 0.3, -0.2];
+        problem.constraints = problem
+            .constraints
+            .iter()
+            .map(|c| Constraint { start: [0.2, 0.1], ..c.clone() })
+            .collect();
+        assert!(round_greedily(&problem).unwrap().violated > 0);
+        assert_eq!(round_constrained(&problem).unwrap().violated, 0);
     }
 }

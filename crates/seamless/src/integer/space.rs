@@ -154,9 +154,7 @@ impl IntegerSpace {
         let mut variables: Vec<Complex64> =
             self.chains.iter().map(|c| translation(c, origin)).collect();
         variables.extend(self.cones.iter().map(|&w| at(w) - origin));
-        let zeta: Vec<Complex64> = (0..self.lattice.rank())
-            .map(|k| evaluate(self.lattice.coordinate(k), &variables))
-            .collect();
+        let zeta = self.coordinates(&variables);
         let exact = self.variables(&zeta);
         let mut x = vec![Complex64::ZERO; self.n_ordinary];
         for (w, base) in self.bases.iter().enumerate() {
@@ -166,6 +164,11 @@ impl IntegerSpace {
             }
         }
         (zeta, x)
+    }
+
+    /// The coordinates zeta of integral variables.
+    pub fn coordinates(&self, variables: &[Complex64]) -> Vec<Complex64> {
+        (0..self.lattice.rank()).map(|k| evaluate(self.lattice.coordinate(k), variables)).collect()
     }
 
     /// `X = B zeta` for any complex zeta.
