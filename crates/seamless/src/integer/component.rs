@@ -2,7 +2,7 @@
 
 use super::barrier::advance;
 use super::certificate::IntegerMap;
-use super::connections::{Connection, connections};
+use super::connections::{Connection, cone_triangles, connections};
 use super::gauss::{Gauss, Overflow};
 use super::reduced::{Dense, couple, schur_complement};
 use super::rounding::{Constraint, Rounded, RoundingProblem, round_constrained, round_greedily};
@@ -136,6 +136,8 @@ pub(super) struct IntegerProblem<'a> {
     matrix: Dense,
     /// Connections up to a radius.
     near: (f64, Vec<Connection>),
+    /// Two sides of every triangle whose corners are all cones.
+    triangles: Vec<[Connection; 2]>,
     /// Connections that blocked the way before, and the coordinates of the layout they were found in.
     learned: Vec<(Connection, Vec<f64>)>,
     /// Mesh length of a mean edge.
@@ -180,6 +182,7 @@ impl<'a> IntegerProblem<'a> {
         let matrix = normalized(schur_complement(&problem, space.lattice())?);
         let zeta = flat(&zeta);
         let seconds = start.elapsed().as_secs_f64();
+        let triangles = cone_triangles(mesh, &cut, &is_cone, &space, &z)?;
         let near = (0.0, Vec::new());
         let unit = metric.unit;
         Ok(Self {
@@ -194,6 +197,7 @@ impl<'a> IntegerProblem<'a> {
             zeta,
             matrix,
             near,
+            triangles,
             learned: Vec::new(),
             unit,
             seconds,
@@ -345,8 +349,13 @@ impl<'a> IntegerProblem<'a> {
         let short = self.near.1.iter().filter(|c| c.length < radius);
         let near = short.map(|c| Constraint::new(c, &self.zeta, h));
         let learned = self.learned.iter().map(|(c, from)| Constraint::new(c, from, h));
-        let constraints = near.chain(learned).collect();
-        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints })
+        let mut constraints: Vec<Constraint> = near.chain(learned).collect();
+        let first = constraints.len();
+        constraints.extend(
+            self.triangles.as_flattened().iter().map(|c| Constraint::new(c, &self.zeta, h)),
+        );
+        let triangles = (first..constraints.len()).step_by(2).map(|k| [k, k + 1]).collect();
+        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints, triangles })
     }
 
     fn integers(&self, rounded: &Rounded) -> Result<Vec<Gauss>, Overflow> {

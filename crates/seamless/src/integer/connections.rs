@@ -67,6 +67,34 @@ pub fn connections(
     Ok(connections)
 }
 
+/// Two sides of every triangle whose corners are all cones, from its first corner: the integers alone decide
+/// about such a triangle.
+///
+/// # Errors
+/// [`Overflow`].
+pub fn cone_triangles(
+    mesh: &TriMesh,
+    cut: &Cut,
+    is_cone: &VertexData<bool>,
+    space: &IntegerSpace,
+    z: &[Complex64],
+) -> Result<Vec<[Connection; 2]>, Overflow> {
+    let mut triangles = Vec::new();
+    for f in mesh.faces() {
+        if mesh.face_vertices(f).iter().all(|&v| is_cone[v]) {
+            let [a, b, c] = f.halfedges().map(|h| cut.wedge[h]);
+            let side = |to: u32| {
+                let mut form = space.form(to).clone();
+                add_scaled(&mut form, space.form(a), Gauss::ONE.negated())?;
+                let length = (z[to as usize] - z[a as usize]).norm();
+                Ok(Connection { length, displacement: space.lattice().pull_back(&form)? })
+            };
+            triangles.push([side(b)?, side(c)?]);
+        }
+    }
+    Ok(triangles)
+}
+
 /// The multiple by a unit whose first coefficient has a positive real part and an imaginary part that is
 /// not negative.
 fn canonical(form: Form) -> Result<Form, Overflow> {

@@ -43,10 +43,14 @@ impl Constraint {
         d[0] * d[0] + d[1] * d[1] > 0.5 && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
     }
 
+    /// The displacement at integers.
+    pub fn at(&self, x: &[i64]) -> [f64; 2] {
+        self.rows.each_ref().map(|row| row.iter().map(|&(k, c)| c * x[k]).sum::<i64>() as f64)
+    }
+
     /// Whether the integers allow it.
     pub fn holds(&self, x: &[i64]) -> bool {
-        let at = |row: &Row| row.iter().map(|&(k, c)| c * x[k]).sum::<i64>() as f64;
-        self.allows([at(&self.rows[0]), at(&self.rows[1])])
+        self.allows(self.at(x))
     }
 }
 
@@ -59,6 +63,13 @@ pub struct RoundingProblem {
     pub mean: Vec<f64>,
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
+    /// Pairs of them, by number, that span a triangle: it must keep its orientation.
+    pub triangles: Vec<[usize; 2]>,
+}
+
+/// Whether two displacements turn to the left.
+pub fn is_left_turn(a: [f64; 2], b: [f64; 2]) -> bool {
+    a[0] * b[1] - a[1] * b[0] > 0.5
 }
 
 /// Integers for the coordinates.
@@ -109,8 +120,7 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     let mut best: Option<(usize, f64, Vec<i64>)> = None;
     let mut restarts = 0;
     loop {
-        let (conditional, conflicts) =
-            fix_connections(&problem.constraints, start.clone(), &priority);
+        let (conditional, conflicts) = fix_connections(problem, start.clone(), &priority);
         let x = improve(problem, conditional.round_rest());
         let violated = violations(problem, &x);
         let key = (violated.len(), energy(&problem.matrix, &problem.mean, &x));
@@ -127,19 +137,25 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     Ok(Rounded { x, violated, restarts })
 }
 
-/// The constraints that do not hold.
+/// The constraints that do not hold, those of triangles that turn over included.
 fn violations(problem: &RoundingProblem, x: &[i64]) -> Vec<usize> {
-    (0..problem.constraints.len()).filter(|&i| !problem.constraints[i].holds(x)).collect()
+    let constraints = &problem.constraints;
+    let mut violated: Vec<usize> =
+        (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
+    let turned = |[a, b]: &&[usize; 2]| !is_left_turn(constraints[*a].at(x), constraints[*b].at(x));
+    violated.extend(problem.triangles.iter().filter(turned).flatten());
+    violated
 }
 
 /// Fixes connections, the shortest as they are now first, at the cheapest value that leaves no determined
 /// connection violated; returns those for which there was none as well.
 fn fix_connections(
-    constraints: &[Constraint],
+    problem: &RoundingProblem,
     start: Conditional,
     priority: &[f64],
 ) -> (Conditional, Vec<usize>) {
-    let mut fixing = Fixing::new(constraints, start);
+    let constraints = &problem.constraints;
+    let mut fixing = Fixing::new(problem, start);
     let mut done = vec![false; constraints.len()];
     let mut conflicts = Vec::new();
     loop {
@@ -162,6 +178,7 @@ fn fix_connections(
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 struct Fixing<'a> {
     constraints: &'a [Constraint],
+    triangles: &'a [[usize; 2]],
     now: Conditional,
     means: Vec<[f64; 2]>,
     variances: Vec<f64>,
@@ -194,12 +211,14 @@ impl Part {
 }
 
 impl<'a> Fixing<'a> {
-    fn new(constraints: &'a [Constraint], start: Conditional) -> Self {
+    fn new(problem: &'a RoundingProblem, start: Conditional) -> Self {
+        let constraints = &problem.constraints;
         let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
         let variance =
             |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
         Self {
             constraints,
+            triangles: &problem.triangles,
             means: constraints.iter().map(mean).collect(),
             variances: constraints.iter().map(variance).collect(),
             determined: DETERMINED * start.mean_variance(),
@@ -224,15 +243,22 @@ impl<'a> Fixing<'a> {
         }
         // Which connections get determined does not depend on the value.
         let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
-        let determined: Vec<usize> =
-            (0..self.constraints.len()).filter(|&j| left(j) <= self.determined).collect();
+        let is_determined: Vec<bool> =
+            (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
         let is_possible = |value: &[i64; 2]| {
             let errors = self.errors(i, &parts, *value);
             let fits = |part: usize| {
                 matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
             };
-            let allows = |&j: &usize| self.constraints[j].allows(self.moved(j, &parts, errors));
-            fits(0) && fits(1) && determined.iter().all(allows)
+            let at = |j: usize| self.moved(j, &parts, errors);
+            let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
+            let turns = |&[a, b]: &[usize; 2]| {
+                !(is_determined[a] && is_determined[b]) || is_left_turn(at(a), at(b))
+            };
+            fits(0)
+                && fits(1)
+                && (0..self.constraints.len()).all(allows)
+                && self.triangles.iter().all(turns)
         };
         let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
             return false;
@@ -326,7 +352,7 @@ mod tests {
         };
         let connections = [connection(&[(0, 1, 0)]), connection(&[(0, 1, 0), (1, 0, -1)])];
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
-        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints }
+        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints, triangles: vec![] }
     }
 
     /// The best integer point within four of the mean that satisfies the constraints.
@@ -358,6 +384,22 @@ mod tests {
             exact += usize::from(found <= best + 1e-9);
         }
         assert!(10 * exact >= 8 * cases as usize, "{exact} of {cases} are the best");
+    }
+
+    #[test]
+    fn triangles_of_cones_keep_their_orientation() {
+        for seed in 0..40 {
+            let mut problem = problem(seed);
+            // the sides of a thin triangle, which would both round to 1
+            problem.mean = vec![0.6, 0.0, 0.6, 0.3];
+            let side = |k| Connection { length: 0.6, displacement: [(k, Gauss::ONE)].into() };
+            problem.constraints =
+                [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
+            problem.triangles = vec![[0, 1]];
+            let rounded = round_constrained(&problem).unwrap();
+            let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
+            assert!(rounded.violated == 0 && is_left_turn(a, b), "seed {seed}: {a:?} {b:?}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Local search around an integer point.
 
 use super::reduced::Dense;
-use super::rounding::RoundingProblem;
+use super::rounding::{RoundingProblem, is_left_turn};
 
 /// Most moves in all.
 const MOST_MOVES: usize = 300;
@@ -32,8 +32,9 @@ struct Search<'a> {
     gradient: Vec<f64>,
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
-    is_violated: Vec<bool>,
     violated: usize,
+    /// For each constraint the triangles it is a side of.
+    sides: Vec<Vec<usize>>,
     /// For each coordinate the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
     /// A fall of the energy that counts.
@@ -63,15 +64,31 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        let is_violated: Vec<bool> = values
-            .iter()
-            .zip(&problem.constraints)
-            .map(|(v, c)| !c.allows(v.map(|x| x as f64)))
-            .collect();
-        let violated = is_violated.iter().filter(|v| **v).count();
+        let mut sides = vec![Vec::new(); problem.constraints.len()];
+        for (k, triangle) in problem.triangles.iter().enumerate() {
+            triangle.iter().for_each(|&i| sides[i].push(k));
+        }
         let gain = 1e-6 * energy.abs() + 1e-12;
         let matrix = &problem.matrix;
-        Self { problem, matrix, x, gradient, values, is_violated, violated, moved, gain }
+        let mut search =
+            Self { problem, matrix, x, gradient, values, violated: 0, sides, moved, gain };
+        let every = 0..problem.constraints.len();
+        search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
+            + (0..problem.triangles.len()).filter(|&k| !search.turns(k, &[])).count();
+        search
+    }
+
+    fn allows(&self, i: usize, value: [i64; 2]) -> bool {
+        self.problem.constraints[i].allows(value.map(|x| x as f64))
+    }
+
+    /// Whether a triangle keeps its orientation when some constraints take other values.
+    fn turns(&self, triangle: usize, changed: &[(usize, [i64; 2])]) -> bool {
+        let [a, b] = self.problem.triangles[triangle].map(|i| {
+            let new = changed.iter().find(|(j, _)| *j == i).map(|(_, value)| *value);
+            new.unwrap_or(self.values[i]).map(|x| x as f64)
+        });
+        is_left_turn(a, b)
     }
 
     /// Change of the energy by a single move.
@@ -79,26 +96,32 @@ impl<'a> Search<'a> {
         self.matrix.row(k)[k] + step as f64 * self.gradient[k]
     }
 
-    /// Violated constraints after some moves.
-    fn violated_after(&self, moves: &[Move]) -> usize {
-        let mut touched: Vec<(usize, [i64; 2])> = Vec::new();
+    /// The constraints that some moves change, and their new values.
+    fn changed(&self, moves: &[Move]) -> Vec<(usize, [i64; 2])> {
+        let mut steps: Vec<(usize, [i64; 2])> = Vec::new();
         for &(k, step) in moves {
-            touched.extend(self.moved[k].iter().map(|&(i, [u, v])| (i, [step * u, step * v])));
+            steps.extend(self.moved[k].iter().map(|&(i, [u, v])| (i, [step * u, step * v])));
         }
-        touched.sort_unstable();
-        let mut count = self.violated;
-        for group in touched.chunk_by(|a, b| a.0 == b.0) {
-            let i = group[0].0;
-            let mut value = self.values[i];
-            group.iter().for_each(|(_, [u, v])| value = [value[0] + u, value[1] + v]);
-            let allowed = self.problem.constraints[i].allows(value.map(|x| x as f64));
-            match (self.is_violated[i], allowed) {
-                (true, true) => count -= 1,
-                (false, false) => count += 1,
-                _ => {}
-            }
-        }
-        count
+        steps.sort_unstable();
+        let sum = |group: &[(usize, [i64; 2])]| {
+            let start = (group[0].0, self.values[group[0].0]);
+            group.iter().fold(start, |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
+        };
+        steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
+    }
+
+    /// Violated constraints and triangles after some moves.
+    fn violated_after(&self, moves: &[Move]) -> usize {
+        let changed = self.changed(moves);
+        let mut triangles: Vec<usize> =
+            changed.iter().flat_map(|(i, _)| &self.sides[*i]).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let before = changed.iter().filter(|(i, _)| !self.allows(*i, self.values[*i])).count()
+            + triangles.iter().filter(|k| !self.turns(**k, &[])).count();
+        let after = changed.iter().filter(|(i, value)| !self.allows(*i, *value)).count()
+            + triangles.iter().filter(|k| !self.turns(**k, &changed)).count();
+        self.violated - before + after
     }
 
     /// Whether moves of this energy are worth it.
@@ -150,17 +173,15 @@ impl<'a> Search<'a> {
     }
 
     fn apply(&mut self, moves: &[Move]) {
+        self.violated = self.violated_after(moves);
+        for (i, value) in self.changed(moves) {
+            self.values[i] = value;
+        }
         for &(k, step) in moves {
             self.x[k] += step;
-            let row = self.matrix.row(k);
             let scale = 2.0 * step as f64;
+            let row = self.matrix.row(k);
             self.gradient.iter_mut().zip(row).for_each(|(g, p)| *g += scale * p);
-            for &(i, [u, v]) in &self.moved[k] {
-                self.values[i] = [self.values[i][0] + step * u, self.values[i][1] + step * v];
-                let allowed = self.problem.constraints[i].allows(self.values[i].map(|x| x as f64));
-                self.is_violated[i] = !allowed;
-            }
         }
-        self.violated = self.is_violated.iter().filter(|v| **v).count();
     }
 }
