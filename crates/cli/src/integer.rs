@@ -1,6 +1,6 @@
 //! `seamstress integer`.
 
-use crate::args::{GridRounding, IntegerArgs, TextureArgs};
+use crate::args::{GridRounding, IntegerArgs};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
 use crate::map_file::MapFile;
@@ -76,7 +76,7 @@ fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
     })?;
     worker.stop.lift_limit();
     // One check per quad, unless told otherwise.
-    let texture = TextureArgs { period: args.texture.period.or(Some(1.0)), ..args.texture };
+    let texture = args.texture.or_period(1.0);
     let pictures = match &args.pictures {
         Some(_) => Some(pictures::draw(&mesh.soup, solution.map.seamless(), &texture)),
         None => None,

@@ -128,7 +128,7 @@ fn greedy_rounding_is_refused_where_it_flips() {
     let soup = testkit::bumpy(&testkit::icosphere(2), 0.25, 2);
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     let rounding = IntegerRounding::Greedy;
-    let options = IntegerOptions { size: GridSize::Quads(12.0), rounding, ..Default::default() };
+    let options = IntegerOptions { size: GridSize::Quads(2.0), rounding, ..Default::default() };
     match run(&mesh, &soup, &options) {
         Err(IntegerError::Uncertified(violations)) => {
             let is_flip = |v: &Violation| {

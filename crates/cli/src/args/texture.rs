@@ -32,6 +32,11 @@ pub(crate) struct TextureArgs {
 }
 
 impl TextureArgs {
+    /// With checks of this size unless another was given.
+    pub(crate) fn or_period(self, period: f64) -> Self {
+        Self { period: self.period.or(Some(period)), ..self }
+    }
+
     /// Where the texture has a point of the map.
     pub(crate) fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = match self.angle {

@@ -179,6 +179,15 @@ impl Violations {
                     vertices.iter_mut().for_each(vertex_of);
                     faces.iter_mut().for_each(face_of);
                 }
+                Violation::NotAnEdge { vertices } => vertices.iter_mut().for_each(vertex_of),
+                Violation::OffAxis { vertices, face, .. } => {
+                    vertices.iter_mut().for_each(vertex_of);
+                    face_of(face);
+                }
+                Violation::SectorAngle { vertex, between, .. } => {
+                    vertex_of(vertex);
+                    between.iter_mut().for_each(vertex_of);
+                }
                 Violation::VertexCount { .. }
                 | Violation::FaceCount { .. }
                 | Violation::UvCount { .. }
