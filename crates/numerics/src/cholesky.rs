@@ -97,6 +97,14 @@ impl<T: Scalar> Cholesky<T> {
         })
     }
 
+    pub(crate) fn symbolic(&self) -> &SymbolicCholesky<u32> {
+        &self.symbolic
+    }
+
+    pub(crate) fn factor(&self) -> &[T] {
+        &self.factor
+    }
+
     /// Number of entries of the factor.
     pub fn factor_len(&self) -> usize {
         self.factor.len()

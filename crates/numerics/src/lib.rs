@@ -6,7 +6,8 @@
 //! * [`buckets`]: ids grouped by a key;
 //! * [`assembly`]: sums of small dense blocks into such a pattern;
 //! * [`dense`]: small dense systems;
-//! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once.
+//! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once;
+//! * [`selected_inverse`]: entries of the inverse at the places of the pattern.
 
 pub mod assembly;
 pub mod buckets;
@@ -14,6 +15,7 @@ pub mod cholesky;
 pub mod dense;
 pub mod ordering;
 pub mod pattern;
+pub mod selected_inverse;
 
 pub use assembly::Assembly;
 pub use buckets::Buckets;

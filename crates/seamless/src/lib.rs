@@ -6,6 +6,7 @@
 //!
 //! A [`field`] can take the place of the first two. [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
 
+pub mod consistency;
 pub mod cut;
 pub mod features;
 pub mod field;

@@ -6,6 +6,7 @@
 //! crate serves tests alone.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod consistency;
 mod flips;
 mod integer_maps;
 mod modify;
@@ -16,6 +17,7 @@ mod solids;
 mod tori;
 mod voxels;
 
+pub use consistency::{CheckedSeam, consistency_faults};
 pub use flips::random_flips;
 pub use integer_maps::{IntegerMap, random_voxels, squares};
 pub use modify::{

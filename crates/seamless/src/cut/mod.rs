@@ -6,8 +6,8 @@ mod steiner;
 
 pub use chains::{Chain, SeamGraph};
 pub use dual_tree::{DualTree, curvature_weight};
-pub(crate) use steiner::Ordered;
 pub use steiner::connect_cones;
+pub(crate) use steiner::{DisjointSets, Ordered};
 
 use seamstress_surface::{Halfedge, HalfedgeData, TriMesh};
 

@@ -135,14 +135,16 @@ impl PartialOrd for Ordered {
     }
 }
 
-struct DisjointSets(Vec<u32>);
+/// Sets of ids that grow together.
+pub(crate) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
-    fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self((0..n as u32).collect())
     }
 
-    fn find(&mut self, mut x: u32) -> u32 {
+    /// The id that stands for the set of `x`.
+    pub(crate) fn find(&mut self, mut x: u32) -> u32 {
         while self.0[x as usize] != x {
             let parent = self.0[x as usize];
             self.0[x as usize] = self.0[parent as usize];
@@ -152,7 +154,7 @@ impl DisjointSets {
     }
 
     /// Joins two sets; false if they were one already.
-    fn unite(&mut self, a: u32, b: u32) -> bool {
+    pub(crate) fn unite(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a as usize] = b;
         a != b

@@ -3,7 +3,7 @@
 use crate::cut::{Cut, DualTree};
 use crate::quarter::rotation;
 use num_complex::Complex64;
-use seamstress_surface::{Face, FaceData, Halfedge, Metric, TriMesh};
+use seamstress_surface::{Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Direction of each face's first half-edge in the unfolded plane, radians, summed up along the tree
@@ -11,32 +11,48 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// It is a linear function of the corner angles, which makes seam rotations comparable between metrics
 /// and liftable: two layouts that differ by full turns get different numbers.
-pub(crate) fn headings(mesh: &TriMesh, metric: &Metric, tree: &DualTree) -> FaceData<f64> {
+pub(crate) fn headings(mesh: &TriMesh, angle: &HalfedgeData<f64>, tree: &DualTree) -> FaceData<f64> {
     let mut heading = FaceData::filled(mesh.n_faces(), 0.0);
     for &f in &tree.order {
         if let Some(h) = tree.ground[f] {
-            heading[f] = -turning(metric, h);
+            heading[f] = -turning(angle, h);
         }
         let Some(h) = tree.parent[f] else { continue };
         let Some(t) = mesh.twin(h) else { continue };
-        heading[f] = heading[h.face()] + turning(metric, h) - turning(metric, t) - PI;
+        heading[f] = heading[h.face()] + turning(angle, h) - turning(angle, t) - PI;
     }
     heading
 }
 
 /// Direction of a half-edge against the first one of its face, radians.
-pub(crate) fn turning(metric: &Metric, h: Halfedge) -> f64 {
+pub(crate) fn turning(angle: &HalfedgeData<f64>, h: Halfedge) -> f64 {
     let [_, second, third] = h.face().halfedges();
     match h.side() {
         0 => 0.0,
-        1 => PI - metric.angle[second],
-        _ => 2.0 * PI - metric.angle[second] - metric.angle[third],
+        1 => PI - angle[second],
+        _ => 2.0 * PI - angle[second] - angle[third],
     }
+}
+
+/// Frames of the faces as given corner angles turn them along the tree: each triangle keeps its shape
+/// and is turned so that its sides point on average where those angles say.
+pub fn frames_of_angles(
+    mesh: &TriMesh,
+    metric: &Metric,
+    angle: &HalfedgeData<f64>,
+    tree: &DualTree,
+) -> Vec<Complex64> {
+    let heading = headings(mesh, angle, tree);
+    let frame = |f: Face| {
+        let off = f.halfedges().map(|h| turning(angle, h) - turning(&metric.angle, h));
+        rotation((heading[f] + off.iter().sum::<f64>() / 3.0) / FRAC_PI_2)
+    };
+    mesh.faces().map(frame).collect()
 }
 
 /// Positions of the wedges after unfolding the faces along the tree; every triangle keeps its shape.
 pub fn unfold(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Vec<Complex64> {
-    let heading = headings(mesh, metric, tree);
+    let heading = headings(mesh, &metric.angle, tree);
     let mut z = vec![Complex64::ZERO; cut.n_wedges];
     for &f in &tree.order {
         let turn = rotation(heading[f] / FRAC_PI_2);
@@ -63,21 +79,21 @@ pub fn unfold(mesh: &TriMesh, metric: &Metric, tree: &DualTree, cut: &Cut) -> Ve
     z
 }
 
-/// Lifted rotation of each half-edge in the isometric layout, in quarter turns: the angle from the left
+/// Lifted rotation of each half-edge in the layout with these corner angles, in quarter turns: the angle from the left
 /// to the right image of its edge, which for edges without a twin is on the ground, along the u axis.
 pub fn rotations(
     mesh: &TriMesh,
-    metric: &Metric,
+    angle: &HalfedgeData<f64>,
     tree: &DualTree,
     halfedges: &[Halfedge],
 ) -> Vec<f64> {
-    let heading = headings(mesh, metric, tree);
+    let heading = headings(mesh, angle, tree);
     halfedges
         .iter()
         .map(|&h| {
-            let left = heading[h.face()] + turning(metric, h);
+            let left = heading[h.face()] + turning(angle, h);
             let right = match mesh.twin(h) {
-                Some(t) => heading[t.face()] + turning(metric, t) + PI,
+                Some(t) => heading[t.face()] + turning(angle, t) + PI,
                 None => 0.0,
             };
             (right - left) / FRAC_PI_2

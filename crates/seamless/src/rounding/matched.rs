@@ -34,7 +34,7 @@ impl MatchedCut {
         let cut = Cut::new(sectors.slit(), |h| tree.crossed[h]);
         let mut turning = cut.seams.clone();
         turning.extend(sectors.aligned().filter(|&h| !tree.crossed[h]));
-        let isometric = isometric::rotations(sectors.slit(), metric, &tree, &turning);
+        let isometric = isometric::rotations(sectors.slit(), &metric.angle, &tree, &turning);
         let matching = isometric.iter().map(|r| r.round() as i32).collect();
         Self { tree, cut, turning, isometric, matching }
     }
@@ -49,7 +49,7 @@ impl MatchedCut {
 
     /// The same matchings over another metric of the same mesh.
     pub fn with_metric(&self, sectors: &Sectors<'_>, metric: &Metric) -> Self {
-        let isometric = isometric::rotations(sectors.slit(), metric, &self.tree, &self.turning);
+        let isometric = isometric::rotations(sectors.slit(), &metric.angle, &self.tree, &self.turning);
         Self { isometric, ..self.clone() }
     }
 

@@ -1,0 +1,27 @@
+//! Consistent matchings: the nearest matchings, indices and angles that triangles can have.
+//!
+//! Problem (14) of the seed (Levi 2021, supplement, section 9). Matchings carry no cost; they only move
+//! index from vertex to vertex. What is left is a convex quadratic over integer indices ([`descent`]) and,
+//! for fixed indices, a quadratic program in the angles ([`program`]).
+
+mod bound;
+mod candidates;
+mod descent;
+mod error;
+mod flow;
+mod from_map;
+mod groups;
+mod input;
+mod problem;
+mod program;
+mod resistance;
+mod solve;
+mod system;
+
+pub use error::ConsistencyError;
+pub use from_map::{consistent_cut, lifted_angles, matched_by_angles};
+pub use input::{
+    AngleNorm, ConsistencyInput, ConsistencyOptions, ConsistencyStats, Consistent, MatchingSet,
+    SeamMatching,
+};
+pub use solve::make_consistent;
