@@ -22,10 +22,13 @@ pub(crate) enum Damage {
     Angles,
     /// 1 % of the vertices, one at least, dragged by two edge lengths in the plane: foldovers
     Foldovers,
+    /// Every matching rounded at once, to stay close to the angles of the surface
+    Naive,
 }
 
 impl Damage {
-    pub(crate) const ALL: [Damage; 3] = [Damage::Matchings, Damage::Angles, Damage::Foldovers];
+    pub(crate) const ALL: [Damage; 4] =
+        [Damage::Matchings, Damage::Angles, Damage::Foldovers, Damage::Naive];
 }
 
 impl std::fmt::Display for Damage {
@@ -34,6 +37,7 @@ impl std::fmt::Display for Damage {
             Damage::Matchings => "matchings",
             Damage::Angles => "angles",
             Damage::Foldovers => "foldovers",
+            Damage::Naive => "naive",
         })
     }
 }

@@ -38,6 +38,8 @@ pub(crate) struct Outcome {
     moved: usize,
     objective: f64,
     lower_bound: f64,
+    columns: usize,
+    programs: usize,
     seconds: f64,
     pub(crate) faults: usize,
     pub(crate) mapped: bool,
@@ -45,7 +47,7 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) const TITLES: [&'static str; 11] = [
+    pub(crate) const TITLES: [&'static str; 13] = [
         "mesh",
         "damage",
         "triangles",
@@ -55,6 +57,8 @@ impl Outcome {
         "indices moved",
         "objective",
         "bound",
+        "columns",
+        "programs",
         "CPU s",
         "result",
     ];
@@ -75,6 +79,8 @@ impl Outcome {
             self.moved.to_string(),
             format!("{:.4}", self.objective),
             format!("{:.4}", self.lower_bound),
+            self.columns.to_string(),
+            self.programs.to_string(),
             format!("{:.2}", self.seconds),
             result,
         ]
@@ -116,6 +122,8 @@ impl Subject {
                 Ok((consistent_cut, consistent)) => {
                     outcome.objective += consistent.objective;
                     outcome.lower_bound += consistent.lower_bound;
+                    outcome.columns += consistent.stats.columns;
+                    outcome.programs += consistent.stats.programs;
                     outcome.moved += consistent.stats.changed_indices;
                     outcome.cones[1] += piece.cones(&consistent_cut);
                     let faults = piece.faults(&matched, &consistent);
@@ -145,6 +153,10 @@ impl Piece {
         let mut matched = matched_by_angles(&self.mesh, &self.metric, tree, &good);
         outcome.cones[0] += self.cones(&matched);
         let angles = match damage {
+            Damage::Naive => {
+                matched = MatchedCut::new(&self.mesh, &self.metric, matched.tree);
+                self.metric.angle.clone()
+            }
             Damage::Matchings => {
                 wrong_matchings(&mut matched.matching, rng);
                 good
