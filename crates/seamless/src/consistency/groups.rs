@@ -101,6 +101,13 @@ impl Groups {
             basins[group.basin as usize].groups.push(g as u32);
             group.change = group.bounds(options.quarters_per_corner);
         }
+        for basin in basins.iter().filter(|basin| !basin.open && basin.groups.len() == 1) {
+            // Nothing can flow; if that is impossible, the bounds stay and the search will say so.
+            let change = &mut list[basin.groups[0] as usize].change;
+            if (change.0..=change.1).contains(&0) {
+                *change = (0, 0);
+            }
+        }
         let mut closed = vec![true; n_components];
         for v in mesh.vertices().filter(|&v| mesh.is_boundary(v)) {
             has_face(v).into_iter().for_each(|h| closed[label[h.face()] as usize] = false);

@@ -24,7 +24,7 @@ const OFF: f64 = 0.01;
 /// Changes of angles below this count as none in reweighting for the l1 norm, radians: at first, at
 /// last, and the factor between rounds.
 const FIRST_EDGE: f64 = 0.1;
-const LAST_EDGE: f64 = 1e-4;
+const LAST_EDGE: f64 = 1e-5;
 const SHARPER: f64 = 0.3;
 
 /// Problem (14) with groups for vertices.
