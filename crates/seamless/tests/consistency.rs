@@ -373,3 +373,35 @@ fn a_vertex_dragged_through_an_edge_keeps_its_index() {
             .unwrap();
     assert_eq!(mended.cone_indices(&mesh, &metric)[centre], 0);
 }
+
+#[test]
+fn a_broken_map_leads_to_a_good_one() {
+    let soup = kit::bumpy(&kit::torus(14, 9, 2.0, 0.8), 0.1, 1);
+    let good = mapped(&soup);
+    let mesh = mesh_of(&soup);
+    let mut uvs = good.map.corner_uvs().to_vec();
+    // Drag a few vertices that no seam touches far enough to fold their triangles over.
+    let mut rng = Rng::new(5);
+    let whole = |v: seamstress_surface::Vertex| {
+        let mut places = mesh.outgoing(v).map(|h| uvs[h.at()]);
+        places.next().is_some_and(|first| places.all(|place| place == first))
+    };
+    let movable: Vec<_> = mesh.vertices().filter(|&v| whole(v)).collect();
+    for _ in 0..4 {
+        let v = movable[rng.below(movable.len())];
+        let [x, y, _] = rng.in_ball();
+        mesh.outgoing(v).for_each(|h| uvs[h.at()] = [uvs[h.at()][0] + x, uvs[h.at()][1] + y]);
+    }
+    let tolerance = seamstress::Tolerance::default();
+    assert!(seamstress::SeamlessMap::certify(&mesh, uvs.clone(), &tolerance).is_err());
+    let start = seamstress::Start::Map(uvs);
+    let mut go_on = |_| std::ops::ControlFlow::Continue(());
+    let options = seamstress::MapOptions::default();
+    let made =
+        seamstress::make_map_from(&mesh, &soup.positions, &start, &options, &mut go_on).unwrap();
+    common::assert_seamless(&soup, &made);
+
+    let short = seamstress::Start::Map(vec![[0.0; 2]; 3]);
+    let refused = seamstress::make_map_from(&mesh, &soup.positions, &short, &options, &mut go_on);
+    assert!(matches!(refused, Err(seamstress::MapError::Field(_))));
+}

@@ -4,7 +4,8 @@ use super::error::ConsistencyError;
 use super::input::{ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet, SeamMatching};
 use super::solve::make_consistent;
 use crate::cut::DualTree;
-use crate::layout::isometric::rotations_of_angles;
+use crate::features::Sectors;
+use crate::layout::isometric::rotations;
 use crate::progress::Watch;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
@@ -50,8 +51,8 @@ pub fn matched_by_angles(
     tree: DualTree,
     angles: &HalfedgeData<f64>,
 ) -> MatchedCut {
-    let mut matched = MatchedCut::new(mesh, metric, tree);
-    let rotations = rotations_of_angles(mesh, angles, &matched.tree, &matched.cut);
+    let mut matched = MatchedCut::new(&Sectors::unaligned(mesh), metric, tree);
+    let rotations = rotations(mesh, angles, &matched.tree, &matched.cut.seams);
     matched.matching = rotations.iter().map(|r| r.round() as i32).collect();
     matched
 }
@@ -73,7 +74,7 @@ pub fn consistent_cut(
         .map(|(&left, &r)| SeamMatching { left, matching: f64::from(r), set: MatchingSet::Integer })
         .collect();
     let indices: VertexData<f64> =
-        matched.cone_indices(mesh, metric).iter().map(|&k| f64::from(k)).collect();
+        matched.sector_indices(&Sectors::unaligned(mesh), metric).iter().map(|&k| f64::from(k)).collect();
     let input = ConsistencyInput { angles, indices: &indices, seams: &seams };
     let consistent = make_consistent(mesh, &input, options, watch)?;
     let matching = consistent.matchings.iter().map(|r| r.round() as i32).collect();

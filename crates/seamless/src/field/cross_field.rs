@@ -234,7 +234,8 @@ pub(super) fn rotation(
     left_angle: f64,
     right_angle: f64,
 ) -> f64 {
-    (right_angle + turning(metric, right) + PI - left_angle - turning(metric, left)) / FRAC_PI_2
+    (right_angle + turning(&metric.angle, right) + PI - left_angle - turning(&metric.angle, left))
+        / FRAC_PI_2
 }
 
 /// What each vertex has of the index of its node: the index itself for interior vertices, and a share of

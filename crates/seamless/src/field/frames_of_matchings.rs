@@ -40,7 +40,7 @@ pub(super) fn frames_of(
     matched: &MatchedCut,
     angles: &[f64],
 ) -> Vec<Complex64> {
-    let heading = headings(mesh, metric, &matched.tree);
+    let heading = headings(mesh, &metric.angle, &matched.tree);
     heading.iter().zip(angles).map(|(h, x)| rotation(h / FRAC_PI_2 + x)).collect()
 }
 

@@ -11,7 +11,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// It is a linear function of the corner angles, which makes seam rotations comparable between metrics
 /// and liftable: two layouts that differ by full turns get different numbers.
-pub(crate) fn headings(mesh: &TriMesh, angle: &HalfedgeData<f64>, tree: &DualTree) -> FaceData<f64> {
+pub(crate) fn headings(
+    mesh: &TriMesh,
+    angle: &HalfedgeData<f64>,
+    tree: &DualTree,
+) -> FaceData<f64> {
     let mut heading = FaceData::filled(mesh.n_faces(), 0.0);
     for &f in &tree.order {
         if let Some(h) = tree.ground[f] {

@@ -5,6 +5,7 @@ use super::exact::{Defects, ExactLayout};
 use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
+use crate::consistency::ConsistencyError;
 use crate::cut::{DualTree, curvature_weight};
 use crate::features::Sectors;
 use crate::field::{PrescriptionError, SmoothError};
@@ -84,6 +85,9 @@ pub enum LayoutError {
     /// The cones prescribed cannot be had beside free ones (ids of the component).
     #[error(transparent)]
     Cones(#[from] PrescriptionError),
+    /// No consistent matchings were found for the map to start from (ids of the component).
+    #[error(transparent)]
+    Inconsistent(ConsistencyError),
     /// A linear system could not be solved.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),
@@ -94,6 +98,16 @@ impl From<HomotopyError> for LayoutError {
         match error {
             HomotopyError::Cancelled(cancelled) => cancelled.into(),
             HomotopyError::Numeric(numeric) => numeric.into(),
+        }
+    }
+}
+
+impl From<ConsistencyError> for LayoutError {
+    fn from(error: ConsistencyError) -> Self {
+        match error {
+            ConsistencyError::Cancelled(cancelled) => cancelled.into(),
+            ConsistencyError::Numeric(numeric) => numeric.into(),
+            other => Self::Inconsistent(other),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
+use super::mended::lay_out_or_mend;
 use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
 use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
@@ -119,7 +120,12 @@ fn solve(
     clock.lap(Stage::Rounding, begun.layouts);
 
     watch.enter(Stage::Layout)?;
-    let laid = lay_out(sectors, &metric, begun.matched, Some(&begun.frames), watch)?;
+    let (rounds, shifted_seams) = (begun.rounds, begun.shifted_seams);
+    let (laid, mended_seams) = if start.leaves_cones_free() && !sectors.any_aligned() {
+        lay_out_or_mend(sectors, &metric, begun, watch)?
+    } else {
+        (lay_out(sectors, &metric, begun.matched, Some(&begun.frames), watch)?, 0)
+    };
     let mut finished = Finished::new(laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
@@ -164,8 +170,8 @@ fn solve(
         boundary_loops: mesh.n_boundary_loops(),
         route: laid.route,
         metric_exponent: exponent,
-        rounding_rounds: begun.rounds,
-        repaired_seams: begun.shifted_seams,
+        rounding_rounds: rounds,
+        repaired_seams: shifted_seams + mended_seams,
         stages: clock.laps,
     };
     Ok((uvs, stats))

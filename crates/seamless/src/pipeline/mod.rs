@@ -4,6 +4,7 @@ mod baseline;
 mod component;
 mod fewer_cones;
 mod finish;
+mod mended;
 mod start;
 
 pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
@@ -86,7 +87,7 @@ pub struct ComponentStats {
     pub metric_exponent: f64,
     /// Rounds of the rounding loop.
     pub rounding_rounds: usize,
-    /// Seams shifted to make indices possible.
+    /// Seams shifted to make indices possible or matchings consistent.
     pub repaired_seams: usize,
     /// Seconds and iterations by stage.
     pub stages: Vec<StageStats>,

@@ -1,13 +1,19 @@
 //! What a map starts from, and the matchings it leads to.
 
 use super::{MapError, MapOptions};
+use crate::consistency::{
+    AngleNorm, ConsistencyOptions, consistent_cut, lifted_angles, matched_by_angles,
+};
+use crate::cut::{DualTree, curvature_weight};
 use crate::features::Sectors;
 use crate::field::{
     ConePrescription, CrossField, FieldError, check_angle, impose, matched_cut, smooth_field,
     smooth_frames,
 };
 use crate::layout::exact::Defects;
+use crate::layout::isometric::frames_of_angles;
 use crate::layout::safeguards::LayoutError;
+use crate::map::{Violation, Violations};
 use crate::progress::Watch;
 use crate::rounding::{MatchedCut, fix_holonomy, repair, round};
 use num_complex::Complex64;
@@ -26,6 +32,9 @@ pub enum Start {
     Field(CrossField),
     /// Given cones: the map has these, and rotations around handles that suit them.
     Cones(ConePrescription),
+    /// A map, three UVs per face, with whatever foldovers: the new map has its cones and matchings, or
+    /// consistent ones near them; see [`crate::consistency`].
+    Map(Vec<[f64; 2]>),
 }
 
 /// Matchings, and frames in the gauge of their cut, to lay out from.
@@ -61,6 +70,14 @@ impl Start {
                 let cones: Vec<(u32, i32)> = cones.map(|(v, &k)| (v.0, k)).collect();
                 ConePrescription::exactly(mesh, &cones)?;
             }
+            Start::Map(uvs) => {
+                count("corners", mesh.n_halfedges(), uvs.len())?;
+                let strange = uvs.iter().position(|uv| !uv.iter().all(|x| x.is_finite()));
+                if let Some(corner) = strange {
+                    let face = (corner / 3) as u32;
+                    return Err(Violations(vec![Violation::NonFiniteUv { face }]).into());
+                }
+            }
             Start::Cones(cones) => count("vertices", mesh.n_vertices(), cones.index().len())?,
         }
         Ok(())
@@ -73,6 +90,10 @@ impl Start {
             Start::SmoothField => Start::SmoothField,
             Start::Field(field) => Start::Field(field.restrict(piece)),
             Start::Cones(cones) => Start::Cones(cones.restrict(piece)),
+            Start::Map(uvs) => {
+                let corners = piece.faces.iter().flat_map(|f| f.halfedges());
+                Start::Map(corners.map(|h| uvs[h.at()]).collect())
+            }
         }
     }
 
@@ -95,6 +116,7 @@ impl Start {
                 let (matched, frames) = matched_cut(mesh, metric, field);
                 Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams: 0 })
             }
+            Start::Map(uvs) => from_map(mesh, metric, uvs, watch),
             Start::Cones(cones) => {
                 let mut begun = rounded(sectors, metric, options, watch)?;
                 begun.shifted_seams = impose(sectors, metric, &mut begun.matched, cones)?;
@@ -133,6 +155,24 @@ fn rounded(
     let (frames, stats) = round(sectors, metric, &mut matched, &options.rounding, watch)?;
     let (rounds, layouts) = (stats.rounds, stats.layouts);
     Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0 })
+}
+
+/// The matchings of a map, made consistent. Its flipped triangles have angles far from any possible
+/// ones: the l1 norm leaves the change with them.
+fn from_map(
+    mesh: &TriMesh,
+    metric: &Metric,
+    uvs: &[[f64; 2]],
+    watch: &mut Watch<'_, '_>,
+) -> Result<Begun, LayoutError> {
+    let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
+    let angles = lifted_angles(mesh, uvs);
+    let read = matched_by_angles(mesh, metric, tree, &angles);
+    let options = ConsistencyOptions { norm: AngleNorm::L1, ..Default::default() };
+    let (matched, consistent) = consistent_cut(mesh, metric, &read, &angles, &options, watch)?;
+    let frames = frames_of_angles(mesh, metric, &consistent.angles, &matched.tree);
+    let shifted_seams = consistent.stats.changed_matchings;
+    Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams })
 }
 
 /// The matchings of a smooth cross field.
