@@ -19,6 +19,7 @@ mod pictures;
 mod progress;
 mod quad_file;
 mod quality;
+mod repair_matchings;
 mod report;
 mod start;
 mod stop;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Extract(args) => extract::run(args),
         Command::Field(args) => field::run(args),
+        Command::RepairMatchings(args) => repair_matchings::run(args),
         Command::LayoutQuads(args) => layout_quads::run(args),
         Command::Quality(args) => quality::run(args),
     };

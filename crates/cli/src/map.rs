@@ -57,8 +57,8 @@ fn plan(args: &MapArgs) -> Result<Plan, Failure> {
     targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
     targets.push(Target::new(Kind::Map, &args.output));
     let start = &args.start;
-    let given = [&start.field, &start.matching, &start.cones].into_iter().flatten();
-    let given = given.map(PathBuf::as_path).chain(args.features.files());
+    let given = [&start.field, &start.matching, &start.cones, &start.from];
+    let given = given.into_iter().flatten().map(PathBuf::as_path).chain(args.features.files());
     let inputs: Vec<&Path> = given.chain([args.mesh.as_path()]).collect();
     Plan::new(&inputs, args.pictures.as_deref(), targets)
 }

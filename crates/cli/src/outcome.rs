@@ -105,6 +105,8 @@ pub(crate) enum Failure {
         file.display()
     )]
     Misaligned { file: PathBuf, cause: Violations },
+    #[error("{}: no consistent matchings: {text}. Nothing was written", file.display())]
+    Inconsistent { file: PathBuf, text: String },
     #[error("{}: stopped: {reason}. Nothing was written", file.display())]
     Stopped { file: PathBuf, reason: StopReason },
     #[error("{}: the map was made, but not its pictures: {cause}. Nothing was written; leave out `--pictures`", file.display())]
@@ -129,6 +131,7 @@ impl Failure {
             Self::Usage(_) | Self::Unwritable(_) | Self::Output { .. } => Status::WrongUsage,
             Self::NoManifold { .. }
             | Self::NoMap { .. }
+            | Self::Inconsistent { .. }
             | Self::Uncertified { .. }
             | Self::Released { .. }
             | Self::Misaligned { .. }

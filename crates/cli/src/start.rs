@@ -1,11 +1,13 @@
 //! Fields, matchings and cones from files.
 
 use crate::args::{Method, StartArgs};
+use crate::map_file::MapFile;
 use crate::outcome::Failure;
-use seamstress::Start;
 use seamstress::field::{
     ConePrescription, CrossField, frames_from_directions, matchings_from_rows, residual_field,
 };
+use seamstress::map::compare_source;
+use seamstress::{Start, Violations};
 use seamstress_io::{Cones, read_cones, read_field, read_matching};
 use seamstress_surface::{HalfedgeData, Metric, TriMesh};
 use std::fmt::Display;
@@ -20,12 +22,29 @@ pub(crate) fn read_start(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
 ) -> Result<Start, Failure> {
+    if let Some(path) = &args.from {
+        return Ok(Start::Map(read_corner_uvs(path, mesh, positions)?));
+    }
     if let Some(path) = &args.cones {
         return Ok(Start::Cones(prescription(path, args.free_cones, mesh)?));
     }
-    let residues = args.matching.as_deref().map(|path| matchings(path, mesh)).transpose()?;
+    match read_cross_field(args.field.as_deref(), args.matching.as_deref(), mesh, positions)? {
+        Some(field) => Ok(Start::Field(field)),
+        None if args.method == Method::Field => Ok(Start::SmoothField),
+        None => Ok(Start::Mesh),
+    }
+}
+
+/// A field, from its directions, from matchings, or from both.
+pub(crate) fn read_cross_field(
+    field: Option<&Path>,
+    matching: Option<&Path>,
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+) -> Result<Option<CrossField>, Failure> {
+    let residues = matching.map(|path| matchings(path, mesh)).transpose()?;
     let metric = || Metric::from_positions(mesh, positions);
-    let field = match (&args.field, &args.matching, residues) {
+    let field = match (field, matching, residues) {
         (Some(path), _, residues) => {
             let directions = read_field(path, mesh.n_faces())?;
             let frames = frames_from_directions(mesh, positions, &directions)
@@ -39,10 +58,27 @@ pub(crate) fn read_start(
         (None, Some(path), Some(residues)) => {
             residual_field(mesh, &metric(), &residues).map_err(|error| refused(path, &error))?
         }
-        _ if args.method == Method::Field => return Ok(Start::SmoothField),
-        _ => return Ok(Start::Mesh),
+        _ => return Ok(None),
     };
-    Ok(Start::Field(field))
+    Ok(Some(field))
+}
+
+/// The UVs of a map of this mesh, which need not be seamless.
+pub(crate) fn read_corner_uvs(
+    path: &Path,
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+) -> Result<Vec<[f64; 2]>, Failure> {
+    let read = MapFile::read(path)?;
+    let faces: Vec<[u32; 3]> = mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
+    let source = (positions, faces.as_slice());
+    let violations = compare_source(source, (&read.soup.positions, &read.soup.faces));
+    match violations.is_empty() {
+        true => Ok(read.corner_uvs),
+        false => {
+            Err(Failure::BadMap { file: path.to_owned(), text: Violations(violations).to_string() })
+        }
+    }
 }
 
 fn matchings(path: &Path, mesh: &TriMesh) -> Result<HalfedgeData<i32>, Failure> {

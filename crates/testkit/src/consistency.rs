@@ -47,12 +47,12 @@ pub fn consistency_faults(
     let mut sums = vec![0.0; n];
     for (f, v) in faces.iter().enumerate() {
         let of_face = &angles[3 * f..3 * f + 3];
-        if !((of_face.iter().sum::<f64>() - PI).abs() < SUM) {
+        if is_off(of_face.iter().sum::<f64>() - PI, SUM) {
             faults.push(format!("the angles of face {f} are {of_face:?}"));
         }
         for k in 0..3 {
             sums[v[k] as usize] += of_face[k];
-            if !(of_face[k] > 0.0) {
+            if of_face[k].is_nan() || of_face[k] <= 0.0 {
                 faults.push(format!("corner {} has angle {}", 3 * f + k, of_face[k]));
             }
         }
@@ -73,16 +73,16 @@ pub fn consistency_faults(
     }
     for v in (0..n).filter(|&v| used[v]) {
         let full = if boundary[v] { PI } else { 2.0 * PI };
-        if !((sums[v] - full + indices[v] * FRAC_PI_2).abs() < SUM) {
+        if is_off(sums[v] - full + indices[v] * FRAC_PI_2, SUM) {
             faults.push(format!("vertex {v}: index {} but angle {}", indices[v], sums[v]));
         }
         if boundary[v] {
             continue;
         }
-        if !(indices[v] < 4.0) {
+        if indices[v].is_nan() || indices[v] >= 4.0 {
             faults.push(format!("vertex {v} has index {}", indices[v]));
         }
-        if !((indices[v] - moved[v]).abs() < SUM) {
+        if is_off(indices[v] - moved[v], SUM) {
             faults.push(format!("vertex {v}: index {}, moved {}", indices[v], moved[v]));
         }
         let was_integer = (indices_before[v] - indices_before[v].round()).abs() < SUM;
@@ -93,6 +93,11 @@ pub fn consistency_faults(
     }
     check_sums(faces, &used, indices, &mut faults);
     faults
+}
+
+/// Whether a difference is too large, or no number.
+fn is_off(difference: f64, allowed: f64) -> bool {
+    difference.is_nan() || difference.abs() > allowed
 }
 
 /// Poincare-Hopf in every component.
@@ -124,7 +129,7 @@ fn check_sums(faces: &[[u32; 3]], used: &[bool], indices: &[f64], faults: &mut V
     faces.iter().for_each(|f| sums.entry(label[f[0] as usize]).or_default().1 += 4);
     edges.iter().for_each(|e| sums.entry(label[e[0] as usize]).or_default().1 -= 4);
     for (first, (sum, expected)) in sums {
-        if !((sum - expected as f64).abs() < SUM * indices.len() as f64) {
+        if is_off(sum - expected as f64, SUM * indices.len() as f64) {
             faults.push(format!("the component of vertex {first} has {sum}, not {expected}"));
         }
     }

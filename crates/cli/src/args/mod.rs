@@ -7,6 +7,7 @@ mod field;
 mod integer;
 mod map;
 mod quads;
+mod repair_matchings;
 mod start;
 mod texture;
 
@@ -17,6 +18,7 @@ pub(crate) use field::FieldArgs;
 pub(crate) use integer::{GridRounding, IntegerArgs};
 pub(crate) use map::MapArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
+pub(crate) use repair_matchings::{Norm, RepairMatchingsArgs};
 pub(crate) use start::{Method, StartArgs};
 pub(crate) use texture::TextureArgs;
 
@@ -74,6 +76,7 @@ pub(crate) enum Command {
     Check(CheckArgs),
     Extract(ExtractArgs),
     Field(FieldArgs),
+    RepairMatchings(RepairMatchingsArgs),
     LayoutQuads(LayoutQuadsArgs),
     Quality(QualityArgs),
 }

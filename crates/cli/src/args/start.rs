@@ -21,6 +21,14 @@ pub(crate) struct StartArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["method", "features", "align_boundary"])]
     pub(crate) cones: Option<PathBuf>,
 
+    /// Start from a map with foldovers: its cones and matchings, or consistent ones near them
+    #[arg(
+        long,
+        value_name = "MAP.obj",
+        conflicts_with_all = ["field", "matching", "cones", "method"]
+    )]
+    pub(crate) from: Option<PathBuf>,
+
     /// Let vertices that the .sing file does not list become cones; an index of 0 keeps one from it
     #[arg(long, requires = "cones")]
     pub(crate) free_cones: bool,

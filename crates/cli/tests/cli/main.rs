@@ -3,6 +3,7 @@
 
 mod bad_meshes;
 mod check;
+mod consistency;
 mod extract;
 mod failures;
 mod features;

@@ -54,7 +54,7 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     /// Sends the units that no triangles could have to the best partners.
-    pub(super) fn into_bounds(
+    pub(super) fn enter_bounds(
         &mut self,
         landscape: &mut impl Landscape,
         watch: &mut Watch<'_, '_>,

@@ -9,8 +9,9 @@ use crate::layout::isometric::rotations;
 use crate::progress::Watch;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
-use seamstress_surface::{HalfedgeData, Metric, TriMesh, VertexData};
-use std::f64::consts::PI;
+use seamstress_surface::components::components;
+use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Corner angles of a map given by one UV per corner, three per face: in every triangle they sum to pi.
 ///
@@ -20,11 +21,10 @@ use std::f64::consts::PI;
 /// Around a vertex the angles of a seamless map sum to a multiple of a quarter turn then, flips or not,
 /// and the indices to 4 chi.
 pub fn lifted_angles(mesh: &TriMesh, corner_uvs: &[[f64; 2]]) -> HalfedgeData<f64> {
-    let at = |k: usize| Complex64::new(corner_uvs[k][0], corner_uvs[k][1]);
     let mut angles = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
     for f in mesh.faces() {
         let corners = f.halfedges();
-        let [a, b, c] = corners.map(|h| at(h.at()));
+        let [a, b, c] = corners.map(|h| at(corner_uvs, h));
         let between = |from: Complex64, to: Complex64| {
             let w = from.conj() * to;
             w.im.atan2(w.re)
@@ -43,6 +43,11 @@ pub fn lifted_angles(mesh: &TriMesh, corner_uvs: &[[f64; 2]]) -> HalfedgeData<f6
     angles
 }
 
+fn at(corner_uvs: &[[f64; 2]], corner: Halfedge) -> Complex64 {
+    let [u, v] = corner_uvs[corner.at()];
+    Complex64::new(u, v)
+}
+
 /// The cut along a dual tree with the matchings nearest to the rotations that given corner angles make:
 /// those of the map, if they are the angles of a seamless one.
 pub fn matched_by_angles(
@@ -55,6 +60,42 @@ pub fn matched_by_angles(
     let rotations = rotations(mesh, angles, &matched.tree, &matched.cut.seams);
     matched.matching = rotations.iter().map(|r| r.round() as i32).collect();
     matched
+}
+
+/// Lifted angles of a map of any mesh, the index of every interior vertex that goes with them (zero
+/// elsewhere), and the matching of every half-edge: the nearest quarter turns across its edge, negated
+/// on twins, zero on the boundary. Of a map that is not seamless, indices that go with the nearest
+/// matchings.
+pub fn transitions(
+    mesh: &TriMesh,
+    corner_uvs: &[[f64; 2]],
+) -> (HalfedgeData<f64>, VertexData<i32>, HalfedgeData<i32>) {
+    let angles = lifted_angles(mesh, corner_uvs);
+    let mut indices = VertexData::filled(mesh.n_vertices(), 0);
+    for piece in components(mesh).unwrap_or_default() {
+        // Any metric shows the indices of lifted matchings.
+        let metric = Metric::from_positions(&piece.mesh, &vec![[0.0; 3]; piece.mesh.n_vertices()]);
+        let tree = DualTree::lightest(&piece.mesh, |_| 0.0);
+        let corners = piece.faces.iter().flat_map(|f| f.halfedges());
+        let local: HalfedgeData<f64> = corners.map(|h| angles[h]).collect();
+        let matched = matched_by_angles(&piece.mesh, &metric, tree, &local);
+        for (v, &k) in matched.cone_indices(&piece.mesh, &metric).enumerate() {
+            indices[piece.vertices[v]] = k;
+        }
+    }
+    let side = |h: Halfedge| {
+        let [a, b] = [h, h.next()].map(|h| at(corner_uvs, h));
+        b - a
+    };
+    let mut matching = HalfedgeData::filled(mesh.n_halfedges(), 0);
+    for h in mesh.interior_edges() {
+        if let Some(t) = mesh.twin(h) {
+            let turn = -side(t) * side(h).conj();
+            matching[h] = (turn.arg() / FRAC_PI_2).round() as i32;
+            matching[t] = -matching[h];
+        }
+    }
+    (angles, indices, matching)
 }
 
 /// Makes the matchings of a cut consistent, all of them integers, by angles to stay close to.

@@ -12,6 +12,7 @@ mod flow;
 mod from_map;
 mod groups;
 mod input;
+mod landscape;
 mod problem;
 mod program;
 mod resistance;
@@ -19,7 +20,7 @@ mod solve;
 mod system;
 
 pub use error::ConsistencyError;
-pub use from_map::{consistent_cut, lifted_angles, matched_by_angles};
+pub use from_map::{consistent_cut, lifted_angles, matched_by_angles, transitions};
 pub use input::{
     AngleNorm, ConsistencyInput, ConsistencyOptions, ConsistencyStats, Consistent, MatchingSet,
     SeamMatching,

@@ -1,15 +1,14 @@
 //! Indices and angles of problem (14).
 
-use super::descent::{Effort, Landscape, Search, Valley};
+use super::descent::{Effort, Search, Valley};
 use super::error::ConsistencyError;
 use super::groups::{FREE, Groups};
 use super::input::{AngleNorm, ConsistencyOptions, ConsistencyStats};
-use super::program::{Program, Solved};
+use super::landscape::{Bounded, Programs, Unbounded};
 use super::resistance::Resistances;
 use super::system::System;
 use crate::progress::Watch;
 use seamstress_numerics::NotPositiveDefinite;
-use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Angles that need no bound are larger than this, radians.
 const SURELY_POSITIVE: f64 = 1e-9;
@@ -62,28 +61,29 @@ impl<'a> Problem<'a> {
         let none = vec![0; self.groups.len()];
         let unit = self.ones.clone();
         match options.norm {
-            AngleNorm::L2 => self.nearest(none, &unit, options, watch).map(|(_, found)| found),
+            AngleNorm::L2 => {
+                self.nearest(none, &unit, options, watch).map(|found| (found.change, found.angles))
+            }
             AngleNorm::L1 => self.sparsest(none, options, watch),
         }
     }
 
     /// Least squares with the given corner weights (inverse stiffness): descent without bounds, then with
-    /// them if some angle came out negative. Returns the start, brought into the bounds of the indices,
-    /// and the end.
+    /// them if some angle came out negative.
     fn nearest(
         &mut self,
         change: Vec<i32>,
         weights: &[f64],
         options: &ConsistencyOptions,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<(Vec<i32>, (Vec<i32>, Vec<f64>)), ConsistencyError> {
+    ) -> Result<Nearest, ConsistencyError> {
         self.system.factorize(weights, 0.0)?;
         let resistances = Resistances::new(&self.system, self.groups, options.column_memory)?;
         let (groups, system) = (self.groups, &self.system);
         let mut search =
             Search { groups, system, resistances, change, batches: 0, impossible_units: 0 };
         let mut plain = Unbounded::new(groups, system, self.angles, weights);
-        search.into_bounds(&mut plain, watch)?;
+        search.enter_bounds(&mut plain, watch)?;
         let start = search.change.clone();
         let valley = search.descend(&mut plain, FREELY, watch)?;
         let mut angles = plain.angles(&valley.potential);
@@ -117,7 +117,7 @@ impl<'a> Problem<'a> {
         self.stats.columns += search.resistances.solved;
         self.stats.programs += programs.count;
         self.stats.interior_point_iterations += programs.iterations;
-        Ok((start, (search.change, angles)))
+        Ok(Nearest { start, change: search.change, angles })
     }
 
     /// Least absolute changes by reweighting: the best of the indices given, those nearest in the l2
@@ -129,8 +129,8 @@ impl<'a> Problem<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<i32>, Vec<f64>), ConsistencyError> {
         let unit = self.ones.clone();
-        let (start, (nearest, angles)) = self.nearest(none, &unit, options, watch)?;
-        let mut best = Sparse::new(nearest, angles, self.angles);
+        let Nearest { start, change, angles } = self.nearest(none, &unit, options, watch)?;
+        let mut best = Sparse::new(change, angles, self.angles);
         for change in [best.change.clone(), start] {
             if let Some(sparse) = self.reweighted(&change, watch)? {
                 best = best.or(sparse);
@@ -139,7 +139,7 @@ impl<'a> Problem<'a> {
         let weights: Vec<f64> =
             best.angles.iter().zip(self.angles).map(|(a, b)| (a - b).abs() + LAST_EDGE).collect();
         let other = match self.nearest(best.change.clone(), &weights, options, watch) {
-            Ok((_, (other, _))) if other != best.change => self.reweighted(&other, watch)?,
+            Ok(other) if other.change != best.change => self.reweighted(&other.change, watch)?,
             Err(ConsistencyError::Cancelled(cancelled)) => return Err(cancelled.into()),
             _ => None,
         };
@@ -190,6 +190,14 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// What a descent in the l2 norm found.
+struct Nearest {
+    /// The indices it started from, brought into their bounds.
+    start: Vec<i32>,
+    change: Vec<i32>,
+    angles: Vec<f64>,
+}
+
 /// Indices and angles judged by the l1 norm.
 struct Sparse {
     change: Vec<i32>,
@@ -213,108 +221,4 @@ fn infeasible(groups: &Groups, valley: &Valley) -> ConsistencyError {
     let off = |g: u32| g != FREE && (SLACK * valley.potential[g as usize]).abs() > OFF;
     let vertices = groups.of.enumerate().filter(|&(_, &g)| off(g)).map(|(v, _)| v.0).collect();
     ConsistencyError::Infeasible { vertices }
-}
-
-/// Angle sum of each group after a change of indices.
-fn targets(groups: &Groups, change: &[i32]) -> Vec<f64> {
-    let list = groups.list.iter().zip(change);
-    list.map(|(g, &n)| g.full_angle - FRAC_PI_2 * (g.index + f64::from(n))).collect()
-}
-
-/// Weighted least squares without bounds: one back-substitution.
-struct Unbounded<'a> {
-    groups: &'a Groups,
-    system: &'a System,
-    weights: &'a [f64],
-    /// Angles with the right sums in triangles.
-    angles: Vec<f64>,
-    sums: Vec<f64>,
-}
-
-impl<'a> Unbounded<'a> {
-    fn new(groups: &'a Groups, system: &'a System, angles: &[f64], weights: &'a [f64]) -> Self {
-        let mut angles = angles.to_vec();
-        for (a, w) in angles.chunks_exact_mut(3).zip(weights.chunks_exact(3)) {
-            let share = (PI - a.iter().sum::<f64>()) / w.iter().sum::<f64>();
-            a.iter_mut().zip(w).for_each(|(a, w)| *a += w * share);
-        }
-        let mut sums = vec![0.0; groups.len()];
-        for (a, &g) in angles.iter().zip(&system.group).filter(|(_, g)| **g != FREE) {
-            sums[g as usize] += a;
-        }
-        Self { groups, system, weights, angles, sums }
-    }
-
-    /// The angles that belong to multipliers of the groups.
-    fn angles(&self, potential: &[f64]) -> Vec<f64> {
-        let at = |i: usize| match self.system.group[i] {
-            FREE => 0.0,
-            g => potential[g as usize],
-        };
-        let mut angles = self.angles.clone();
-        for (f, a) in angles.chunks_exact_mut(3).enumerate() {
-            let w = &self.weights[3 * f..3 * f + 3];
-            let mean = (0..3).map(|k| w[k] * at(3 * f + k)).sum::<f64>() / w.iter().sum::<f64>();
-            (0..3).for_each(|k| a[k] += w[k] * (at(3 * f + k) - mean));
-        }
-        angles
-    }
-}
-
-impl Landscape for Unbounded<'_> {
-    fn at(&mut self, change: &[i32], _: &mut Watch<'_, '_>) -> Result<Valley, ConsistencyError> {
-        let targets = targets(self.groups, change);
-        let lack: Vec<f64> = targets.iter().zip(&self.sums).map(|(t, s)| t - s).collect();
-        let mut potential = lack.clone();
-        self.system.solve(&mut potential)?;
-        let value = lack.iter().zip(&potential).map(|(c, y)| c * y).sum();
-        Ok(Valley { value, potential })
-    }
-}
-
-/// What the quadratic programs have cost.
-#[derive(Debug, Clone, Copy, Default)]
-struct Programs {
-    count: usize,
-    iterations: usize,
-}
-
-/// Weighted least squares with positive angles: a quadratic program.
-struct Bounded<'a> {
-    groups: &'a Groups,
-    system: &'a mut System,
-    angles: &'a [f64],
-    stiffness: Vec<f64>,
-    slack: f64,
-    programs: Programs,
-}
-
-impl Bounded<'_> {
-    fn solve(
-        &mut self,
-        change: &[i32],
-        watch: &mut Watch<'_, '_>,
-    ) -> Result<Solved, ConsistencyError> {
-        let program = Program {
-            angles: self.angles,
-            stiffness: &self.stiffness,
-            target: &targets(self.groups, change),
-            slack: self.slack,
-        };
-        let solved = program.solve(self.system, watch)?;
-        self.programs.count += 1;
-        self.programs.iterations += solved.iterations;
-        Ok(solved)
-    }
-}
-
-impl Landscape for Bounded<'_> {
-    fn at(
-        &mut self,
-        change: &[i32],
-        watch: &mut Watch<'_, '_>,
-    ) -> Result<Valley, ConsistencyError> {
-        let solved = self.solve(change, watch)?;
-        Ok(Valley { value: solved.value, potential: solved.potential })
-    }
 }
