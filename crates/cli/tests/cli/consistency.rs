@@ -57,7 +57,14 @@ fn a_broken_map_is_recovered() {
         0,
         &["map", "in.obj", "--matching", "m.matching", "-o", "again.obj", "--sing", "again.sing"],
     );
-    assert_eq!(folder.read("again.sing"), folder.read("m.sing"));
+    // A file of matchings modulo 4 keeps the indices modulo 4.
+    let residues = |name: &str| -> Vec<(u32, i32)> {
+        let text = folder.read(name);
+        let rows = text.lines().skip(1).map(|line| line.split_once(' ').unwrap());
+        let rows = rows.map(|(v, k)| (v.parse().unwrap(), k.parse::<i32>().unwrap().rem_euclid(4)));
+        rows.filter(|&(_, k)| k != 0).collect()
+    };
+    assert_eq!(residues("again.sing"), residues("m.sing"));
 }
 
 #[test]

@@ -10,37 +10,91 @@ use crate::progress::Watch;
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_surface::components::components;
-use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_surface::{Face, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Passes over the flipped triangles; each lowers the sum, and few do.
+const PASSES: usize = 20;
+/// Smaller gains are rounding errors, quarters squared.
+const GAIN: f64 = 1e-6;
 
 /// Corner angles of a map given by one UV per corner, three per face: in every triangle they sum to pi.
 ///
-/// A flipped triangle has negative angles, which sum to -pi; a full turn more at its largest corner
-/// makes up for it. (A vertex dragged across the opposite edge of its triangle has gone through a
-/// straight angle there: its angle is a little more than pi, the other two a little less than zero.)
-/// Around a vertex the angles of a seamless map sum to a multiple of a quarter turn then, flips or not,
-/// and the indices to 4 chi.
+/// A flipped triangle has negative angles, which sum to -pi; a full turn more at one of its corners makes
+/// up for it. (A vertex dragged across the opposite edge of its triangle has gone through a straight
+/// angle there: its angle is a little more than pi, the other two a little less than zero.) Around a
+/// vertex the angles of a seamless map sum to a multiple of a quarter turn then, flips or not, and the
+/// indices to 4 chi. The corner is the one that leaves the indices smallest, as a sum of squares.
 pub fn lifted_angles(mesh: &TriMesh, corner_uvs: &[[f64; 2]]) -> HalfedgeData<f64> {
-    let mut angles = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
+    let mut angles: HalfedgeData<f64> = mesh
+        .halfedges()
+        .map(|h| {
+            let [z, after, before] = [h, h.next(), h.prev()].map(|h| at(corner_uvs, h));
+            let w = (after - z).conj() * (before - z);
+            let angle = w.im.atan2(w.re);
+            if angle.is_finite() { angle } else { PI / 3.0 }
+        })
+        .collect();
+    let turns = |f: Face| {
+        let sum: f64 = f.halfedges().map(|h| angles[h]).iter().sum();
+        ((PI - sum) / (2.0 * PI)).round()
+    };
+    let lacking: Vec<(Face, f64)> =
+        mesh.faces().map(|f| (f, turns(f))).filter(|&(_, turns)| turns != 0.0).collect();
+    for (h, turns) in places_of_turns(mesh, &angles, &lacking) {
+        angles[h] += 2.0 * PI * turns;
+    }
     for f in mesh.faces() {
-        let corners = f.halfedges();
-        let [a, b, c] = corners.map(|h| at(corner_uvs, h));
-        let between = |from: Complex64, to: Complex64| {
-            let w = from.conj() * to;
-            w.im.atan2(w.re)
-        };
-        let mut signed = [between(b - a, c - a), between(c - b, a - b), between(a - c, b - c)];
-        let largest = (0..3).max_by(|&i, &j| signed[i].abs().total_cmp(&signed[j].abs()));
-        let turns = ((PI - signed.iter().sum::<f64>()) / (2.0 * PI)).round();
-        signed[largest.unwrap_or(0)] += 2.0 * PI * turns;
         // Nothing but rounding errors is left, or a triangle without area.
-        let rest = (PI - signed.iter().sum::<f64>()) / 3.0;
-        for (h, angle) in corners.into_iter().zip(signed) {
-            let angle = angle + rest;
-            angles[h] = if angle.is_finite() { angle } else { PI / 3.0 };
-        }
+        let rest = (PI - f.halfedges().map(|h| angles[h]).iter().sum::<f64>()) / 3.0;
+        f.halfedges().iter().for_each(|&h| angles[h] += rest);
     }
     angles
+}
+
+/// The corner of each face given that gets its full turns: at first the largest, then moved about while
+/// that makes the sum of squared indices smaller. The boundary has none.
+fn places_of_turns(
+    mesh: &TriMesh,
+    angles: &HalfedgeData<f64>,
+    lacking: &[(Face, f64)],
+) -> Vec<(Halfedge, f64)> {
+    let mut index: VertexData<f64> = VertexData::filled(mesh.n_vertices(), 4.0);
+    for (h, angle) in angles.enumerate() {
+        index[mesh.origin(h)] -= angle / FRAC_PI_2;
+    }
+    let size = |h: Halfedge| angles[h].abs();
+    let largest = |f: Face| f.halfedges().into_iter().max_by(|&a, &b| size(a).total_cmp(&size(b)));
+    let mut places: Vec<(Halfedge, f64)> =
+        lacking.iter().map(|&(f, turns)| (largest(f).unwrap_or(f.halfedge(0)), turns)).collect();
+    for &(h, turns) in &places {
+        index[mesh.origin(h)] -= 4.0 * turns;
+    }
+    for _ in 0..PASSES {
+        let mut moved = false;
+        for (place, turns) in &mut places {
+            let step = 4.0 * *turns;
+            index[mesh.origin(*place)] += step;
+            // What the turns cost at a corner: (k - step)^2 - k^2.
+            let cost = |h: Halfedge| match mesh.is_boundary(mesh.origin(h)) {
+                true => 0.0,
+                false => step * (step - 2.0 * index[mesh.origin(h)]),
+            };
+            let mut best = *place;
+            for other in place.face().halfedges() {
+                if cost(other) < cost(best) - GAIN {
+                    best = other;
+                }
+            }
+            moved |= best != *place;
+            *place = best;
+            index[mesh.origin(best)] -= step;
+        }
+        if !moved {
+            break;
+        }
+    }
+    places
 }
 
 fn at(corner_uvs: &[[f64; 2]], corner: Halfedge) -> Complex64 {
