@@ -133,7 +133,7 @@ pub fn transitions(
         let corners = piece.faces.iter().flat_map(|f| f.halfedges());
         let local: HalfedgeData<f64> = corners.map(|h| angles[h]).collect();
         let matched = matched_by_angles(&piece.mesh, &metric, tree, &local);
-        for (v, &k) in matched.cone_indices(&piece.mesh, &metric).enumerate() {
+        for (v, &k) in matched.sector_indices(&Sectors::unaligned(&piece.mesh), &metric).enumerate() {
             indices[piece.vertices[v]] = k;
         }
     }

@@ -124,7 +124,7 @@ mod tests {
             let length = (z[b as usize] - z[a as usize]).norm();
             assert!((length - metric.length[h]).abs() < 1e-10);
         }
-        let rotations = rotations(&mesh, &metric, &tree, &cut.seams);
+        let rotations = rotations(&mesh, &metric.angle, &tree, &cut.seams);
         for (&h, r) in cut.seams.iter().zip(rotations) {
             let [a, b, c, d] = cut.seam_wedges(&mesh, h).map(|w| z[w as usize]);
             let turned = direction(b - a) * rotation(r);
