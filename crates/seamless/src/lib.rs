@@ -20,14 +20,17 @@ pub mod quarter;
 pub mod rounding;
 
 pub use features::{ReleaseReason, ReleasedFeature, Sectors};
-pub use layout::polish::PolishOptions;
 pub use integer::{
     GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
     to_integer_map,
 };
+pub use layout::anisotropy::{Anisotropy, Stretch};
+pub use layout::objective::{Objective, ObjectiveOptions};
+pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{
-    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, StageStats,
-    Start, UncertifiedMap, make_aligned_map, make_field_map, make_map, make_map_from,
+    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, Relayout,
+    RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap, lay_out_disk,
+    make_aligned_map, make_field_map, make_map, make_map_from, relayout,
 };
 pub use progress::{Observer, Progress, Stage};

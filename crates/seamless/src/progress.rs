@@ -18,6 +18,8 @@ pub enum Stage {
     CleanUp,
     /// Lowering the largest distortion.
     Polish,
+    /// Minimising the objective asked for.
+    Objective,
     /// Certifying.
     Certificate,
     /// Rounding to an integer map.
@@ -33,6 +35,7 @@ impl Stage {
             Stage::Layout => "layout",
             Stage::CleanUp => "clean-up",
             Stage::Polish => "polish",
+            Stage::Objective => "objective",
             Stage::Certificate => "certificate",
             Stage::Integers => "integers",
         }

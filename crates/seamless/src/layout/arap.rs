@@ -20,6 +20,15 @@ pub fn frames(triangles: &[Triangle], z: &[Complex64]) -> Vec<Complex64> {
     triangles.par_iter().with_min_len(4096).map(|t| frame(t, z)).collect()
 }
 
+/// Mean squared distance `|J - R|^2` of a layout's Jacobians to rotations, the energy of eq. (6).
+pub fn distance_to_frames(triangles: &[Triangle], frames: &[Complex64], z: &[Complex64]) -> f64 {
+    let distance = |(t, r): (&Triangle, &Complex64)| {
+        let j = t.jacobian(z);
+        2.0 * t.weight * ((j.similar - r).norm_sqr() + j.anti.norm_sqr())
+    };
+    triangles.iter().zip(frames).map(distance).sum()
+}
+
 /// Layouts that follow given Jacobians as well as the space allows; one factorisation for many.
 pub struct Poisson<'p> {
     problem: &'p mut LayoutProblem,
@@ -34,6 +43,11 @@ impl<'p> Poisson<'p> {
         problem.assemble_dirichlet();
         problem.factorize(SHIFT)?;
         Ok(Self { problem })
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &LayoutProblem {
+        self.problem
     }
 
     /// The unknowns that minimise `sum of area |J - A|^2`, eq. (6), for a target `A` per triangle given

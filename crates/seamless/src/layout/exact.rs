@@ -13,6 +13,7 @@ use crate::cut::{Cut, SeamGraph, connect_cones};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
+use crate::quality::{Distortion, Measure, SingularValues};
 use crate::quarter::{turn, within};
 use crate::rounding::MatchedCut;
 use num_complex::Complex64;
@@ -252,31 +253,19 @@ impl ExactLayout {
 
     /// Scales the unknowns to the best global scale of the symmetric Dirichlet energy.
     pub fn rescale(&self, y: &mut [f64]) {
-        let scale = self.measure(y).best_scale();
-        if scale.is_finite() && scale > 0.0 {
-            y.iter_mut().for_each(|x| *x *= scale);
-        }
+        let scale = Measure::SymmetricDirichlet.scale(&self.singular_values(y));
+        y.iter_mut().for_each(|x| *x *= scale);
     }
 
     /// Mean symmetric Dirichlet energy at its best scale, and tau.
     pub fn distortion(&self, y: &[f64]) -> (f64, f64) {
-        let m = self.measure(y);
-        (2.0 * (m.squares * m.inverse_squares).sqrt(), (m.largest / m.smallest).sqrt())
+        let d = Distortion::new(&self.singular_values(y));
+        (d.symmetric_dirichlet, d.tau)
     }
 
-    fn measure(&self, y: &[f64]) -> Measure {
-        let z = self.expand(y);
-        let start =
-            Measure { squares: 0.0, inverse_squares: 0.0, largest: 0.0, smallest: f64::INFINITY };
-        self.problem.triangles().iter().fold(start, |m, t| {
-            let (s1, s2) = t.jacobian(&z).singular_values();
-            Measure {
-                squares: m.squares + t.weight * (s1 * s1 + s2 * s2),
-                inverse_squares: m.inverse_squares + t.weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2)),
-                largest: m.largest.max(s1),
-                smallest: m.smallest.min(s2),
-            }
-        })
+    /// Singular values of the triangles.
+    pub fn singular_values(&self, y: &[f64]) -> SingularValues {
+        SingularValues::of_layout(self.problem.triangles(), &self.expand(y))
     }
 
     /// The largest first and the smallest second singular value.
@@ -301,20 +290,6 @@ impl ExactLayout {
         wrong_angles.sort_unstable();
         wrong_angles.dedup();
         Defects { flips: slit.faces().filter(flipped).collect(), wrong_angles }
-    }
-}
-
-/// Area-weighted means of the singular values' squares, and their extremes.
-struct Measure {
-    squares: f64,
-    inverse_squares: f64,
-    largest: f64,
-    smallest: f64,
-}
-
-impl Measure {
-    fn best_scale(&self) -> f64 {
-        (self.inverse_squares / self.squares).powf(0.25)
     }
 }
 

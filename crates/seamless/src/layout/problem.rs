@@ -1,5 +1,6 @@
 //! A layout problem: triangles, the space their corners live in, and one factorisation for both.
 
+use super::anisotropy::Anisotropy;
 use super::energy::{Energy, ProjectedHessian};
 use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
@@ -153,6 +154,11 @@ impl LayoutProblem {
         self.triangles = triangles(mesh, metric, cut);
     }
 
+    /// Measures the Jacobians from stretched faces from now on.
+    pub fn stretch(&mut self, anisotropy: &Anisotropy) {
+        anisotropy.apply(&mut self.triangles);
+    }
+
     /// Entries of the Cholesky factor.
     pub fn factor_len(&self) -> usize {
         self.cholesky.factor_len()
@@ -219,6 +225,27 @@ impl LayoutProblem {
                     let (g, h) = (t.gradients[i / 2], t.gradients[j / 2]);
                     let same = (i % 2 == j % 2) as u8 as f64;
                     block[at] = same * t.weight * (g[0] * h[0] + g[1] * h[1]);
+                    at += 1;
+                }
+            }
+        });
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+    }
+
+    /// Assembles the conformal form `sum of area (sigma_1 - sigma_2)^2 / 2`, twice the squared
+    /// anti-similarity part of the Jacobian.
+    pub fn assemble_conformal(&mut self) {
+        self.fill_triangles(|t, _, block| {
+            // Coefficients of j00 - j11 and j01 + j10 in the corner coordinates.
+            let coefficient = |i: usize| {
+                let [x, y] = t.gradients[i / 2];
+                if i.is_multiple_of(2) { [x, y] } else { [-y, x] }
+            };
+            let mut at = 0;
+            for i in 0..6 {
+                for j in 0..=i {
+                    let (a, b) = (coefficient(i), coefficient(j));
+                    block[at] = t.weight * (a[0] * b[0] + a[1] * b[1]);
                     at += 1;
                 }
             }

@@ -6,6 +6,7 @@ use super::homotopy::{self, Closed, Continuation, HomotopyError};
 use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use crate::consistency::ConsistencyError;
+use super::objective::OptimizeError;
 use crate::cut::{DualTree, curvature_weight};
 use crate::features::Sectors;
 use crate::field::{PrescriptionError, SmoothError};
@@ -88,9 +89,21 @@ pub enum LayoutError {
     /// No consistent matchings were found for the map to start from (ids of the component).
     #[error(transparent)]
     Inconsistent(ConsistencyError),
+    /// A mesh that must be a disk is none.
+    #[error("it is not a disk")]
+    NotADisk,
     /// A linear system could not be solved.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),
+}
+
+impl From<OptimizeError> for LayoutError {
+    fn from(error: OptimizeError) -> Self {
+        match error {
+            OptimizeError::Cancelled(cancelled) => cancelled.into(),
+            OptimizeError::Numeric(numeric) => numeric.into(),
+        }
+    }
 }
 
 impl From<HomotopyError> for LayoutError {

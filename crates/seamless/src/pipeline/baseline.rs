@@ -108,5 +108,7 @@ fn lay_out_field(
         repaired_seams: 0,
         stages: clock.laps,
     };
+    let mut y = y;
+    layout.rescale(&mut y);
     Ok((corner_uvs(mesh, &metric, &layout, &y), stats, cones))
 }

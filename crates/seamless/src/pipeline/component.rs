@@ -7,6 +7,7 @@ use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
 use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
 use crate::layout::exact::ExactLayout;
+use crate::layout::objective::{ObjectiveOptions, optimize};
 use crate::layout::safeguards::{LayoutError, lay_out, way_back};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
@@ -144,10 +145,19 @@ fn solve(
     }
 
     let mut laid = finished.laid;
+    laid.layout.rescale(&mut laid.y);
     let mut candidates = vec![corner_uvs(mesh, plain, &laid.layout, &laid.y)];
     if exponent < 1.0 {
         laid.y = way_back(mesh, plain, &mut laid.layout, laid.y, exponent, watch)?;
+        laid.layout.rescale(&mut laid.y);
         candidates.push(corner_uvs(mesh, plain, &laid.layout, &laid.y));
+    }
+    if let Some(objective) = options.objective {
+        watch.enter(Stage::Objective)?;
+        let settings = ObjectiveOptions::default();
+        let best = optimize(sectors, &mut laid.layout, laid.y, objective, &settings, watch)?;
+        candidates.push(corner_uvs(mesh, plain, &laid.layout, &best.y));
+        clock.lap(Stage::Objective, best.iterations);
     }
     // The thinnest triangles may flip when the result is scaled and moved: look at what is given out.
     let aligned = EdgeSet::new(mesh, sectors.aligned()).vertex_pairs(mesh);
@@ -177,16 +187,14 @@ fn solve(
     Ok((uvs, stats))
 }
 
-/// UVs per corner in mesh units at the best global scale, the lower left corner of their box at zero.
+/// UVs per corner in mesh units, the lower left corner of their box at zero.
 pub(super) fn corner_uvs(
     mesh: &TriMesh,
     plain: &Metric,
     layout: &ExactLayout,
     y: &[f64],
 ) -> Vec<[f64; 2]> {
-    let mut y = y.to_vec();
-    layout.rescale(&mut y);
-    let z = layout.expand(&y);
+    let z = layout.expand(y);
     let low =
         |coordinate: fn(&Complex64) -> f64| z.iter().map(coordinate).fold(f64::INFINITY, f64::min);
     let corner = Complex64::new(low(|z| z.re), low(|z| z.im));

@@ -5,14 +5,17 @@ mod component;
 mod fewer_cones;
 mod finish;
 mod mended;
+mod relayout;
 mod start;
 
 pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
+pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relayout};
 pub use start::Start;
 
 use crate::features::ReleasedFeature;
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
+use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
@@ -37,6 +40,9 @@ pub struct MapOptions {
     pub strict_features: bool,
     /// The finish that lowers tau. None: growing powers of the energy alone, as clean-up is judged by.
     pub polish: Option<PolishOptions>,
+    /// What to minimise in the end, instead of the compromise of mean and worst distortion that is made
+    /// without it.
+    pub objective: Option<Objective>,
     /// Tolerance of the certificate.
     pub tolerance: Tolerance,
 }
@@ -48,6 +54,7 @@ impl Default for MapOptions {
             cone_price: 0.0006,
             strict_features: false,
             polish: Some(PolishOptions::default()),
+            objective: None,
             tolerance: Tolerance::default(),
         }
     }

@@ -2,6 +2,8 @@
 
 use super::scale;
 use super::singular::SingularValues;
+use crate::layout::distance::Arap;
+use crate::layout::energy::{Energy, SymmetricDirichlet};
 
 /// A measure of distortion: a function of the signed singular values of each triangle, a rule for the global
 /// scale at which they are taken, and the mean or the maximum as the figure of the whole map.
@@ -90,12 +92,9 @@ impl Measure {
         let is_positive = s2 > 0.0;
         match self {
             Self::TauTilde | Self::Tau if is_positive => s1.max(1.0 / s2),
-            Self::SymmetricDirichlet if is_positive => {
-                let (a, b) = (s1 * s1, s2 * s2);
-                a + b + 1.0 / a + 1.0 / b
-            }
+            Self::SymmetricDirichlet if is_positive => SymmetricDirichlet.value(s1, s2),
             Self::Dilatation if is_positive => s1 / s2,
-            Self::Arap | Self::ArapMax => (s1 - 1.0).powi(2) + (s2 - 1.0).powi(2),
+            Self::Arap | Self::ArapMax => Arap.value(s1, s2),
             Self::Asap => 0.5 * (s1 - s2).powi(2),
             // The limit: nothing of a rotation is left.
             Self::AsapMax if s1 == 0.0 => 2.0,
