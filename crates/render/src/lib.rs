@@ -6,9 +6,12 @@
 //! same scene gives the same bytes on any number of threads.
 
 mod camera;
+mod canvas;
 mod checker;
 mod error;
+mod font;
 mod frame;
+mod heat;
 mod image;
 mod interpolate;
 mod layout;
@@ -26,6 +29,7 @@ mod vec3;
 
 pub use camera::{Projection, View};
 pub use error::RenderError;
+pub use heat::HeatMap;
 pub use image::Image;
 pub use layout::{LayoutOptions, render_layout};
 pub use paint::Paint;
