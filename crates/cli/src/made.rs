@@ -4,6 +4,7 @@ use crate::faults::{listing, violation_json};
 use crate::report;
 use crate::summary;
 use crate::text::{counted, row};
+use crate::writers::Written;
 use seamstress::map::Cone;
 use seamstress::quality::Distortion;
 use seamstress::{
@@ -54,13 +55,6 @@ impl Made {
         self.map.as_ref().err().map(|layout| &layout.violations)
     }
 
-    pub(crate) fn corner_uvs(&self) -> &[[f64; 2]] {
-        match &self.map {
-            Ok(map) => map.corner_uvs(),
-            Err(layout) => &layout.corner_uvs,
-        }
-    }
-
     pub(crate) fn cones(&self) -> &[Cone] {
         match &self.map {
             Ok(map) => map.cones(),
@@ -68,11 +62,16 @@ impl Made {
         }
     }
 
-    /// For the head of the file.
-    pub(crate) fn title(&self) -> &'static str {
+    /// The map as it is written.
+    pub(crate) fn written(&self) -> Written<'_> {
         match &self.map {
-            Ok(_) => "Seamless map",
-            Err(_) => "Uncertified layout of a cross field (triangles are flipped)",
+            Ok(map) => Written::certified(map, &self.distortion),
+            Err(layout) => Written {
+                title: "Uncertified layout of a cross field (triangles are flipped)",
+                corner_uvs: &layout.corner_uvs,
+                cones: &self.field_cones,
+                distortion: &self.distortion,
+            },
         }
     }
 

@@ -9,10 +9,12 @@ mod field;
 mod input;
 mod integer;
 mod job;
+mod layout;
 mod layout_quads;
 mod made;
 mod map;
 mod map_file;
+mod measure;
 mod outcome;
 mod output;
 mod pictures;
@@ -23,10 +25,12 @@ mod repair_matchings;
 mod report;
 mod start;
 mod stop;
+mod stretches;
 mod summary;
 mod system;
 mod text;
 mod verdict;
+mod writers;
 
 use args::{Args, Command};
 use clap::Parser;
@@ -43,6 +47,8 @@ fn main() -> ExitCode {
         Command::RepairMatchings(args) => repair_matchings::run(args),
         Command::LayoutQuads(args) => layout_quads::run(args),
         Command::Quality(args) => quality::run(args),
+        Command::Measure(args) => measure::run(args),
+        Command::Layout(args) => layout::run(args),
     };
     match done {
         Ok(status) => status.into(),

@@ -11,11 +11,11 @@ use crate::pictures;
 use crate::report::{self, Cost, MapReport, VERSION};
 use crate::start::read_start;
 use crate::summary;
-use crate::text::{self, counted, figure, row};
+use crate::text::{self, row};
+use crate::writers::{write_cones, write_map};
 use seamstress::{
     FieldMapOptions, MapError, Start, make_aligned_map, make_field_map, make_map_from,
 };
-use seamstress_io::{MapObj, write_map_obj, write_singularities};
 use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
@@ -165,10 +165,10 @@ fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(
     }
     for target in &plan.targets {
         batch.write(&target.path, |file| match target.kind {
-            Kind::Cones => write_cones(file, product),
+            Kind::Cones => write_cones(file, product.made.cones()),
             Kind::Report => writeln!(file, "{report}"),
             Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),
-            _ => write_map(file, args, product),
+            _ => write_map(file, &product.mesh, &product.made.written()),
         })?;
     }
     job.still_wanted()?;
@@ -198,6 +198,7 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
             "tau_polish": !args.no_tau_polish,
             "polish_time": args.polish_time.map(|limit| limit.as_secs_f64()),
             "max_energy_rise": args.max_energy_rise,
+            "objective": args.objective,
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
             "threads": args.run.threads,
         }),
@@ -222,38 +223,6 @@ fn start_json(start: &StartArgs) -> serde_json::Value {
         "cones": name(&start.cones),
         "free_cones": start.free_cones,
     })
-}
-
-fn write_map(file: &mut impl Write, args: &MapArgs, product: &Product) -> std::io::Result<()> {
-    let made = &product.made;
-    let name = args.mesh.file_name().unwrap_or(args.mesh.as_os_str());
-    let repaired = match product.mesh.repairs.len() {
-        0 => String::new(),
-        n => format!(", after {}", counted(n, "repair")),
-    };
-    let comments = [
-        format!("{} by Seamstress {VERSION}", made.title()),
-        format!("Source: {}{repaired}", name.display()),
-        format!(
-            "tau {}, symmetric Dirichlet energy {}, {}",
-            figure(report::tau(&made.distortion)),
-            figure(made.distortion.symmetric_dirichlet),
-            counted(made.cones().len(), "cone"),
-        ),
-    ];
-    let map = MapObj {
-        positions: &product.mesh.soup.positions,
-        faces: &product.mesh.soup.faces,
-        corner_uvs: made.corner_uvs(),
-        comments: &comments,
-    };
-    write_map_obj(file, &map)
-}
-
-fn write_cones(file: &mut impl Write, product: &Product) -> std::io::Result<()> {
-    let cones = product.made.cones();
-    let rows: Vec<(u32, i32)> = cones.iter().map(|c| (c.vertex, c.index)).collect();
-    write_singularities(file, &rows)
 }
 
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {

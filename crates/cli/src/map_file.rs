@@ -1,6 +1,9 @@
 //! Maps from files.
 
+use crate::input::LoadedMesh;
 use crate::outcome::Failure;
+use seamstress::Violation;
+use seamstress::map::compare_source;
 use seamstress_io::{PolygonMesh, read_mesh};
 use seamstress_surface::soup::TriangleSoup;
 use std::path::Path;
@@ -59,5 +62,20 @@ impl Triangles {
             return Err(bad_map(path, &text));
         };
         Ok(Self { faces, corner_uvs })
+    }
+}
+
+impl MapFile {
+    /// Refuses a map whose triangles are not those of the mesh.
+    pub(crate) fn require_faces_of(&self, mesh: &LoadedMesh, path: &Path) -> Result<(), Failure> {
+        let source = (&mesh.soup.positions[..], &mesh.soup.faces[..]);
+        let faces = (&self.soup.positions[..], &self.soup.faces[..]);
+        let fault = compare_source(source, faces)
+            .into_iter()
+            .find(|fault| !matches!(fault, Violation::MovedVertex { .. }));
+        match fault {
+            Some(fault) => Err(bad_map(path, &format!("not a map of the mesh: {fault}"))),
+            None => Ok(()),
+        }
     }
 }

@@ -61,6 +61,8 @@ pub(crate) enum Failure {
     /// A field, matchings or cones to start from that are not of the mesh, or that no map has.
     #[error("{}: {text}", file.display())]
     BadStart { file: PathBuf, text: String },
+    #[error("{}: {text}", file.display())]
+    BadStretches { file: PathBuf, text: String },
     #[error("{0}")]
     Usage(String),
     #[error(transparent)]
@@ -124,6 +126,7 @@ impl Failure {
             Self::Unreadable(_)
             | Self::BadMesh { .. }
             | Self::BadMap { .. }
+            | Self::BadStretches { .. }
             | Self::BadFeatures { .. }
             | Self::Undrawable { .. }
             | Self::NoQuads { .. }

@@ -2,15 +2,48 @@
 
 use crate::args::TextureArgs;
 use crate::features::{AlignedFeatures, Features};
+use crate::text::figure;
 use seamstress::SeamlessMap;
+use seamstress::quality::Summary;
 use seamstress_quads::{IrregularVertex, QuadMesh};
 use seamstress_render::{
-    LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout, render_surface,
+    HeatMap, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout,
+    render_surface,
 };
 use seamstress_surface::soup::TriangleSoup;
 
 /// The files, in the order of [`draw`].
 pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
+
+/// Draws the surface from both sides in the colours of a measure, with a legend, as one PNG.
+pub(crate) fn heat(soup: &TriangleSoup, summary: &Summary) -> Result<Vec<u8>, RenderError> {
+    let scene = Scene { positions: &soup.positions, faces: &soup.faces, ..Scene::default() };
+    let measure = summary.measure;
+    let mut high = summary.percentiles.p99;
+    if !high.is_finite() {
+        let finite = summary.values.iter().copied().filter(|x| x.is_finite());
+        high = finite.fold(measure.ideal(), f64::max);
+    }
+    let title =
+        format!("{}   mean {}   max {}", measure.name(), figure(summary.mean), figure(summary.max));
+    // An isometry has one colour, not the noise of its last digits.
+    let high = high.max(measure.ideal() + LEAST_RANGE);
+    let heat = HeatMap { low: measure.ideal(), high, title };
+    let options = |view| SurfaceOptions {
+        view,
+        paint: heat.paint(&summary.values.0),
+        ..SurfaceOptions::default()
+    };
+    let front = render_surface(&scene, &options(View::Front))?;
+    let back = render_surface(&scene, &options(View::Back))?;
+    let mut png = Vec::new();
+    let both = front.beside(&back)?;
+    heat.with_legend(&both, &summary.values.0)?.write_png(&mut png)?;
+    Ok(png)
+}
+
+/// The colours span at least this.
+const LEAST_RANGE: f64 = 1e-6;
 
 /// Draws the surface from both sides and the layout, with the features, aligned and released; the texture
 /// is turned, scaled and shifted first.

@@ -5,7 +5,7 @@ use crate::faults::fault_json;
 use crate::input::LoadedMesh;
 use crate::output::Target;
 use seamstress::map::{Certificate, Cone};
-use seamstress::quality::Distortion;
+use seamstress::quality::{Distortion, Summary};
 use seamstress::{Alignment, ComponentStats, SeamlessMap};
 use seamstress_surface::soup::ComponentFacts;
 use serde::Serialize;
@@ -134,6 +134,23 @@ pub(crate) fn distortion_json(distortion: &Distortion) -> Value {
         fields.insert("tau".into(), number(tau(distortion)));
     }
     value
+}
+
+/// A measure over a map.
+pub(crate) fn measure_json(summary: &Summary) -> Value {
+    let mut value = serde_json::to_value(summary).unwrap_or_default();
+    let missing = if summary.worst.is_none() { "nan" } else { "inf" };
+    spell_out(&mut value, missing);
+    value["worst"] = summary.worst.map(|face| face.0).into();
+    value["ideal"] = summary.measure.ideal().into();
+    value
+}
+
+/// Adds the fields of an object to another.
+pub(crate) fn merge(target: &mut Value, fields: Value) {
+    if let (Value::Object(target), Value::Object(fields)) = (target, fields) {
+        target.extend(fields);
+    }
 }
 
 /// The distortion, undefined if nothing has an area.

@@ -48,6 +48,21 @@ impl Image {
         self.get(x, y).unwrap_or_default()
     }
 
+    /// This picture with another of the same height to its right.
+    ///
+    /// # Errors
+    /// [`RenderError::BadOption`] if the heights differ.
+    pub fn beside(&self, right: &Image) -> Result<Image, RenderError> {
+        if self.height != right.height {
+            return Err(RenderError::BadOption { name: "height", requirement: "equal" });
+        }
+        let rows = |image: &Image| 3 * image.width as usize;
+        let (a, b) = (rows(self), rows(right));
+        let lines = self.pixels.chunks(a.max(1)).zip(right.pixels.chunks(b.max(1)));
+        let pixels = lines.flat_map(|(left, right)| left.iter().chain(right).copied()).collect();
+        Ok(Self::from_rows(self.width + right.width, self.height, pixels))
+    }
+
     /// Writes the picture as a PNG.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Arguments of `check`.
 
-use super::{EXIT_CODES, FeatureArgs, not_negative};
+use super::{EXIT_CODES, FeatureArgs, not_negative, tolerance};
 use seamstress::{AlignmentTolerance, Tolerance};
 use std::path::PathBuf;
 
@@ -76,11 +76,7 @@ pub(crate) struct CheckArgs {
 impl CheckArgs {
     /// How exact a map must be.
     pub(crate) fn tolerance(&self) -> Tolerance {
-        let mut tolerance = Tolerance::default();
-        if let Some(seam) = self.tolerance {
-            tolerance.seam = seam;
-        }
-        tolerance
+        tolerance(self.tolerance)
     }
 
     /// How well features must be aligned.

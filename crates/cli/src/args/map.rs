@@ -1,10 +1,11 @@
 //! Arguments of `map`.
 
 use super::{
-    ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, seconds,
+    ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, objective,
+    seconds,
 };
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
-use seamstress::{MapOptions, PolishOptions};
+use seamstress::{MapOptions, Objective, PolishOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -100,6 +101,10 @@ pub(crate) struct MapArgs {
     )]
     pub(crate) max_energy_rise: f64,
 
+    /// Minimise this in the end, instead of the compromise of mean and worst distortion
+    #[arg(long, value_name = "NAME", value_parser = objective())]
+    pub(crate) objective: Option<Objective>,
+
     #[command(flatten)]
     pub(crate) texture: TextureArgs,
 
@@ -130,6 +135,7 @@ impl MapArgs {
             max_energy_rise: self.max_energy_rise,
             time_limit: self.polish_time,
         });
+        options.objective = self.objective;
         options
     }
 }

@@ -5,7 +5,9 @@ mod extract;
 mod features;
 mod field;
 mod integer;
+mod layout;
 mod map;
+mod measure;
 mod quads;
 mod repair_matchings;
 mod start;
@@ -16,15 +18,19 @@ pub(crate) use extract::ExtractArgs;
 pub(crate) use features::FeatureArgs;
 pub(crate) use field::FieldArgs;
 pub(crate) use integer::{GridRounding, IntegerArgs};
+pub(crate) use layout::LayoutArgs;
 pub(crate) use map::MapArgs;
+pub(crate) use measure::MeasureArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
 pub(crate) use repair_matchings::{Norm, RepairMatchingsArgs};
 pub(crate) use start::{Method, StartArgs};
 pub(crate) use texture::TextureArgs;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, value_parser};
-use seamstress::MapOptions;
+use seamstress::quality::Measure;
 use seamstress::rounding::RoundingOptions;
+use seamstress::{MapOptions, Objective, Tolerance};
 use std::time::Duration;
 
 const EXIT_CODES: &str = "\
@@ -44,6 +50,8 @@ Examples:
   seamstress integer bunny.ply --quads 5000 -o grid.obj
   seamstress check bunny.ply
   seamstress check bunny.ply bunny.obj
+  seamstress measure bunny.ply bunny.obj --picture heat.png
+  seamstress layout bunny.ply bunny.obj --objective asap -o conformal.obj
   seamstress extract integer.obj -o quads.obj";
 
 /// Makes seamless maps of triangle meshes
@@ -56,7 +64,8 @@ Examples:
 /// `map` makes a map and certifies it: no triangle is flipped or collapsed, every seam fits, and the
 /// angle at every cone is a multiple of 90 degrees. `integer` makes a map whose unit squares close up
 /// over the surface, and `extract` turns such a map into a quad mesh. `check` lists what is wrong with
-/// a mesh, or certifies the map in a file, whatever program wrote it.
+/// a mesh, or certifies the map in a file, whatever program wrote it. `measure` tells the distortion of
+/// any map, and `layout` lowers the kind of distortion you choose.
 #[derive(Debug, Parser)]
 #[command(
     name = "seamstress",
@@ -79,6 +88,8 @@ pub(crate) enum Command {
     RepairMatchings(RepairMatchingsArgs),
     LayoutQuads(LayoutQuadsArgs),
     Quality(QualityArgs),
+    Measure(MeasureArgs),
+    Layout(LayoutArgs),
 }
 
 /// What every command that may take long has.
@@ -132,6 +143,32 @@ impl ConeArgs {
         options.cone_price = self.cone_price;
         options
     }
+}
+
+/// Names of objectives.
+fn objective() -> impl TypedValueParser<Value = Objective> {
+    PossibleValuesParser::new(Objective::ALL.map(Objective::name)).map(|name| {
+        // The parser lets no other name pass.
+        let named = Objective::ALL.into_iter().find(|objective| objective.name() == name);
+        named.unwrap_or(Objective::SymmetricDirichlet)
+    })
+}
+
+/// Names of measures.
+fn measure() -> impl TypedValueParser<Value = Measure> {
+    PossibleValuesParser::new(Measure::ALL.map(Measure::name)).map(|name| {
+        let named = Measure::ALL.into_iter().find(|measure| measure.name() == name);
+        named.unwrap_or(Measure::Tau)
+    })
+}
+
+/// The certificate's tolerance with another one for seams.
+fn tolerance(seam: Option<f64>) -> Tolerance {
+    let mut tolerance = Tolerance::default();
+    if let Some(seam) = seam {
+        tolerance.seam = seam;
+    }
+    tolerance
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -160,6 +160,13 @@ pub enum MapError {
     Uncertified(#[from] Violations),
 }
 
+impl MapError {
+    /// Whether a component that had to be a disk is none.
+    pub fn is_not_a_disk(&self) -> bool {
+        matches!(self, Self::Component { cause: LayoutError::NotADisk, .. })
+    }
+}
+
 /// The first few released features of a list.
 fn listed(released: &[ReleasedFeature]) -> String {
     const SHOWN: usize = 5;

@@ -97,6 +97,21 @@ pub enum Ending {
     NoGain,
 }
 
+impl std::fmt::Display for Ending {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Converged => f.write_str("converged"),
+            Self::Stopped => f.write_str("stopped before it settled"),
+            Self::Guarded { flips: 0 } => f.write_str("held at the edge of the flip-free region"),
+            Self::Guarded { flips } => write!(
+                f,
+                "held at the edge of the flip-free region: the minimiser would flip {flips} triangles"
+            ),
+            Self::NoGain => f.write_str("no gain: the start is returned"),
+        }
+    }
+}
+
 /// A layout that minimises an objective. It has no flips and the right angles if its start had.
 #[derive(Debug, Clone)]
 #[non_exhaustive]

@@ -1,0 +1,193 @@
+//! `seamstress layout`.
+
+use crate::args::LayoutArgs;
+use crate::input::LoadedMesh;
+use crate::job::{Job, Worker};
+use crate::map_file::MapFile;
+use crate::outcome::{Failure, Status};
+use crate::output::{Kind, Plan, Target};
+use crate::pictures;
+use crate::report::{self, Cost, VERSION};
+use crate::stretches::read_stretches;
+use crate::summary;
+use crate::text::{self, figure, row};
+use crate::writers::{Written, write_map};
+use seamstress::{Anisotropy, MapError, Progress, Relayout, SeamlessMap, lay_out_disk, relayout};
+use seamstress_surface::TriMesh;
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+
+/// The work done, and nothing written yet.
+struct Product {
+    mesh: LoadedMesh,
+    solution: Relayout,
+    pictures: Option<[Vec<u8>; 3]>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &LayoutArgs) -> Result<Status, Failure> {
+    let job = Job::new(&args.run, &args.mesh)?;
+    let plan = plan(args)?;
+    let owned = args.clone();
+    let product = job.run(move |worker| make(&owned, worker))?;
+    finish(args, &job, &plan, &product)?;
+    Ok(Status::Done)
+}
+
+/// The outputs; the map last, since it says that the rest is there.
+fn plan(args: &LayoutArgs) -> Result<Plan, Failure> {
+    let mut inputs: Vec<&Path> = vec![&args.mesh];
+    inputs.extend(args.map.as_deref());
+    inputs.extend(args.anisotropy.as_deref());
+    let mut targets = Vec::new();
+    if let Some(folder) = &args.pictures {
+        targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
+    }
+    targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
+    targets.push(Target::new(Kind::Map, &args.output));
+    Plan::new(&inputs, args.pictures.as_deref(), targets)
+}
+
+/// The part of the command that may take long.
+fn make(args: &LayoutArgs, mut worker: Worker) -> Result<Product, Failure> {
+    let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
+    if !args.run.quiet {
+        mesh.tell_findings();
+    }
+    let connectivity = mesh.connect()?;
+    let start = args.map.as_deref().map(|path| read_map(args, path, &mesh, &connectivity));
+    let start = start.transpose()?;
+    let mut options = args.options();
+    options.anisotropy =
+        args.anisotropy.as_deref().map(|path| stretches(path, &mesh, &connectivity)).transpose()?;
+    let mut observer = |progress: Progress| worker.observe(progress);
+    let positions = &mesh.soup.positions;
+    let made = match &start {
+        Some(map) => relayout(&connectivity, positions, map, &options, &mut observer),
+        None => lay_out_disk(&connectivity, positions, &options, &mut observer),
+    };
+    let solution = made.map_err(|cause| {
+        let file = mesh.path.clone();
+        match (cause, worker.stop.reason()) {
+            (MapError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+            (cause, _) if cause.is_not_a_disk() => Failure::Usage(format!(
+                "{}: {cause}; give a seamless map to start from, as made by `seamstress map`",
+                file.display()
+            )),
+            (cause, _) => Failure::NoMap { file, cause },
+        }
+    })?;
+    worker.stop.lift_limit();
+    let pictures = args
+        .pictures
+        .as_ref()
+        .map(|_| pictures::draw(&mesh.soup, &solution.map, &args.texture))
+        .transpose()
+        .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
+    Ok(Product { mesh, solution, pictures })
+}
+
+/// The map to start from, which must be certified.
+fn read_map(
+    args: &LayoutArgs,
+    path: &Path,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+) -> Result<SeamlessMap, Failure> {
+    let map = MapFile::read(path)?;
+    map.require_faces_of(mesh, path)?;
+    let tolerance = args.options().tolerance;
+    SeamlessMap::certify(connectivity, map.corner_uvs, &tolerance).map_err(|violations| {
+        let text = format!(
+            "not a seamless map: {violations}; `seamstress check` lists everything, and a larger \
+             `--tolerance` allows seams that are open by rounding"
+        );
+        Failure::BadMap { file: path.to_owned(), text }
+    })
+}
+
+fn stretches(
+    path: &Path,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+) -> Result<Anisotropy, Failure> {
+    Anisotropy::new(connectivity, &mesh.soup.positions, &read_stretches(path)?)
+        .map_err(|error| Failure::BadStretches { file: path.to_owned(), text: error.to_string() })
+}
+
+/// Writes everything, puts it in place and prints the summary.
+fn finish(args: &LayoutArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(), Failure> {
+    let (mesh, solution) = (&product.mesh, &product.solution);
+    let cost = job.cost();
+    let report = if args.run.json || args.report.is_some() {
+        report_text(args, plan, product, cost)
+    } else {
+        String::new()
+    };
+    let mut pictures = product.pictures.iter().flatten();
+    let mut batch = plan.begin()?;
+    for target in &plan.targets {
+        batch.write(&target.path, |file| match target.kind {
+            Kind::Report => writeln!(file, "{report}"),
+            Kind::Picture => file.write_all(pictures.next().map_or(&[], Vec::as_slice)),
+            _ => write_map(file, mesh, &Written::certified(&solution.map, &solution.distortion)),
+        })?;
+    }
+    job.still_wanted()?;
+    batch.commit()?;
+    if args.run.json {
+        text::print(&report)?;
+    } else if !args.run.quiet {
+        text::print(&summary_text(args, plan, product, &cost))?;
+    }
+    Ok(())
+}
+
+fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) -> String {
+    let solution = &product.solution;
+    let mut value = json!({
+        "seamstress": VERSION,
+        "command": "layout",
+        "options": {
+            "objective": args.objective,
+            "start": args.map.as_ref().map(|path| path.to_string_lossy()),
+            "anisotropy": args.anisotropy.as_ref().map(|path| path.to_string_lossy()),
+            "repair": args.repair,
+            "tolerance": args.options().tolerance.seam,
+            "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
+            "threads": args.run.threads,
+        },
+        "input": report::input_json(&product.mesh),
+        "components": solution.components,
+        "files": plan.targets,
+        "cost": cost,
+    });
+    report::merge(&mut value, report::map_json(&solution.map, &solution.distortion));
+    report::to_text(&value)
+}
+
+fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
+    let solution = &product.solution;
+    let mut rows = summary::mesh_rows(&product.mesh);
+    for (k, stats) in solution.components.iter().enumerate() {
+        let whose = match solution.components.len() {
+            1 => String::new(),
+            _ => format!("component {k}: "),
+        };
+        let text = format!(
+            "{whose}{} {} -> {} ({})",
+            args.objective,
+            figure(stats.before),
+            figure(stats.after),
+            stats.ending
+        );
+        rows.push(row("objective", &text));
+    }
+    rows.extend(summary::map_rows(&solution.map, &solution.distortion));
+    rows.push(summary::cost_row(cost, &[]));
+    let names: Vec<String> =
+        plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
+    rows.push(row("written", &names.join(", ")));
+    rows.join("\n")
+}
