@@ -10,9 +10,11 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::stretches::read_stretches;
 use crate::summary;
-use crate::text::{self, figure, row};
+use crate::text::{self, counted, figure, row};
 use crate::writers::{Written, write_map};
-use seamstress::{Anisotropy, MapError, Progress, Relayout, SeamlessMap, lay_out_disk, relayout};
+use seamstress::{
+    Anisotropy, ConicStats, MapError, Progress, Relayout, SeamlessMap, lay_out_disk, relayout,
+};
 use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
@@ -152,6 +154,7 @@ fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) ->
         "options": {
             "objective": args.objective,
             "start": args.map.as_ref().map(|path| path.to_string_lossy()),
+            "solver": args.options().settings.conic.solver,
             "anisotropy": args.anisotropy.as_ref().map(|path| path.to_string_lossy()),
             "repair": args.repair,
             "tolerance": args.options().tolerance.seam,
@@ -165,6 +168,21 @@ fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) ->
     });
     report::merge(&mut value, report::map_json(&solution.map, &solution.distortion));
     report::to_text(&value)
+}
+
+/// How the conic programs went.
+fn conic_row(stats: ConicStats) -> String {
+    let solver = report::name_of(&stats.solver);
+    let mut text = format!("{} solved by {solver}", counted(stats.programs, "program"));
+    if let Some(outcome) = stats.fallback_from {
+        text += &format!(", after our own solver ended with {}", report::name_of(&outcome));
+    }
+    text += match stats.injective_by_bound {
+        Some(true) => ", mu < 1: no flips by the bound alone",
+        Some(false) => ", mu not below 1",
+        None => "",
+    };
+    row("", &text)
 }
 
 fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
@@ -183,6 +201,7 @@ fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) 
             stats.ending
         );
         rows.push(row("objective", &text));
+        rows.extend(stats.conic.map(conic_row));
     }
     rows.extend(summary::map_rows(&solution.map, &solution.distortion));
     rows.push(summary::cost_row(cost, &[]));

@@ -9,8 +9,8 @@ use crate::pictures;
 use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::SeamlessMap;
 use seamstress::quality::{Aggregate, Measure, SingularValues, Summary, measure_all};
+use seamstress::{Objective, SeamlessMap};
 use seamstress_surface::Metric;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -107,7 +107,9 @@ impl Measured {
         rows.extend(self.summaries.iter().map(|summary| {
             let percentiles = summary.percentiles;
             let mark = |aggregate, x: f64| {
-                let star = if summary.measure.aggregate() == aggregate { "*" } else { " " };
+                let is_goal = Objective::ALL.iter().any(|o| o.measure() == Some(summary.measure));
+                let is_figure = is_goal && summary.measure.aggregate() == aggregate;
+                let star = if is_figure { "*" } else { " " };
                 format!("{}{star}", figure(x))
             };
             line([

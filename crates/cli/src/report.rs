@@ -146,6 +146,12 @@ pub(crate) fn measure_json(summary: &Summary) -> Value {
     value
 }
 
+/// The name that something without fields has in reports.
+pub(crate) fn name_of(value: &impl Serialize) -> String {
+    let value = serde_json::to_value(value).unwrap_or_default();
+    value.as_str().unwrap_or_default().to_owned()
+}
+
 /// Adds the fields of an object to another.
 pub(crate) fn merge(target: &mut Value, fields: Value) {
     if let (Value::Object(target), Value::Object(fields)) = (target, fields) {

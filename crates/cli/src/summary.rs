@@ -187,7 +187,10 @@ pub(crate) fn cost_row(cost: &Cost, parts: impl Iterator<Item = (&'static str, f
     }
     let stages: Vec<String> =
         stages.iter().map(|(name, seconds)| format!("{name} {seconds:.2}")).collect();
-    let mut text = format!("{:.2} s ({})", cost.wall_seconds, stages.join(", "));
+    let mut text = format!("{:.2} s", cost.wall_seconds);
+    if !stages.is_empty() {
+        text += &format!(" ({})", stages.join(", "));
+    }
     text += &format!(", {}", counted(cost.threads, "thread"));
     if let Some(cpu) = cost.cpu_seconds {
         text += &format!(", {cpu:.2} s of CPU");

@@ -79,11 +79,9 @@ impl HeatMap {
             canvas.text(&label, [start, bar[3] + 1.1 * unit], 1.5);
         }
         if clipped {
-            canvas.text(
-                "> and above",
-                [left + width - canvas.text_width("> and above", 1.5), 1.5 * unit],
-                1.5,
-            );
+            let text = format!("bright end = {} and more", number(self.high));
+            let start = left + width - canvas.text_width(&text, 1.5);
+            canvas.text(&text, [start, 1.5 * unit], 1.5);
         }
         self.swatches(&mut canvas, values, [left, bar[3] + 4.0 * unit]);
         Ok(canvas.finish())
@@ -103,6 +101,11 @@ impl HeatMap {
             x += 5.0 * unit + canvas.text_width(text, 1.5);
         }
     }
+}
+
+/// A number with about four digits.
+fn number(x: f64) -> String {
+    if (1e-2..1e6).contains(&x.abs()) { format!("{x:.4}") } else { format!("{x:.2e}") }
 }
 
 /// About this many numbers stand below the bar.

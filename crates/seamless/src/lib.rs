@@ -25,7 +25,8 @@ pub use integer::{
     to_integer_map,
 };
 pub use layout::anisotropy::{Anisotropy, Stretch};
-pub use layout::objective::{Objective, ObjectiveOptions};
+pub use layout::conic::Solver;
+pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 pub use pipeline::{

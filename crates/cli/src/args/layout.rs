@@ -1,7 +1,7 @@
 //! Arguments of `layout`.
 
 use super::{EXIT_CODES, RunArgs, TextureArgs, not_negative, objective, tolerance};
-use seamstress::{Objective, RelayoutOptions};
+use seamstress::{Objective, RelayoutOptions, Solver};
 use std::path::PathBuf;
 
 const LAYOUT_EXAMPLES: &str = "\
@@ -34,6 +34,11 @@ pub(crate) struct LayoutArgs {
     #[arg(long, value_name = "NAME", value_parser = objective())]
     pub(crate) objective: Objective,
 
+    /// Solver of the conic programs of `arap-max`, `tau`, `asap-max` and `dilatation`; where our own
+    /// fails, Clarabel takes over
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = SolverName::Own)]
+    pub(crate) solver: SolverName,
+
     /// Stretches that count as no distortion: a text file with five numbers per triangle, a direction in
     /// space and the stretch wanted along and across it
     #[arg(long, value_name = "FILE")]
@@ -62,11 +67,24 @@ pub(crate) struct LayoutArgs {
     pub(crate) run: RunArgs,
 }
 
+/// Names of the conic solvers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SolverName {
+    /// Our own
+    Own,
+    /// Clarabel
+    Clarabel,
+}
+
 impl LayoutArgs {
     /// The settings without the stretches, which are in a file.
     pub(crate) fn options(&self) -> RelayoutOptions {
         let mut options = RelayoutOptions::new(self.objective);
         options.tolerance = tolerance(self.tolerance);
+        options.settings.conic.solver = match self.solver {
+            SolverName::Own => Solver::Own,
+            SolverName::Clarabel => Solver::Clarabel,
+        };
         options
     }
 }

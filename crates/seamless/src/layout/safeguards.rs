@@ -92,6 +92,9 @@ pub enum LayoutError {
     /// A mesh that must be a disk is none.
     #[error("it is not a disk")]
     NotADisk,
+    /// The objective could not be minimised.
+    #[error(transparent)]
+    Objective(OptimizeError),
     /// A linear system could not be solved.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),
@@ -102,6 +105,7 @@ impl From<OptimizeError> for LayoutError {
         match error {
             OptimizeError::Cancelled(cancelled) => cancelled.into(),
             OptimizeError::Numeric(numeric) => numeric.into(),
+            error => Self::Objective(error),
         }
     }
 }

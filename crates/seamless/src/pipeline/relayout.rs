@@ -8,7 +8,9 @@ use crate::layout::disk::{embed_disk, is_disk};
 use crate::layout::energy::SymmetricDirichlet;
 use crate::layout::exact::ExactLayout;
 use crate::layout::newton::NewtonOptions;
-use crate::layout::objective::{Ending, Objective, ObjectiveOptions, Optimized, optimize};
+use crate::layout::objective::{
+    ConicStats, Ending, Objective, ObjectiveOptions, Optimized, optimize,
+};
 use crate::layout::safeguards::LayoutError;
 use crate::map::{SeamlessMap, Tolerance};
 use crate::progress::{Observer, Stage, Watch};
@@ -66,6 +68,8 @@ pub struct RelayoutStats {
     pub iterations: usize,
     /// How they ended.
     pub ending: Ending,
+    /// How the conic programs were solved, if there were any.
+    pub conic: Option<ConicStats>,
 }
 
 /// Lays a seamless map out anew for an objective, with its matchings and cones. Its seams may come to lie
@@ -161,10 +165,16 @@ fn improve(
         // The map holds in floating point, but not the layout that closes its seams exactly.
         return Err(LayoutError::Defective(defects));
     }
-    let Optimized { y, value, before, iterations, ending } =
+    let Optimized { y, value, before, iterations, ending, conic } =
         optimize(&sectors, &mut layout, y, options.objective, &options.settings, watch)?;
-    let stats =
-        |after, ending| RelayoutStats { faces: mesh.n_faces(), before, after, iterations, ending };
+    let stats = |after, ending| RelayoutStats {
+        faces: mesh.n_faces(),
+        before,
+        after,
+        iterations,
+        ending,
+        conic,
+    };
     let uvs = corner_uvs(mesh, metric, &layout, &y);
     match SeamlessMap::certify(mesh, uvs, &options.tolerance) {
         Ok(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),

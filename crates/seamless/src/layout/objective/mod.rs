@@ -5,6 +5,7 @@ mod rigid;
 mod similar;
 
 use super::arap::{distance_to_frames, frames};
+use super::conic::{self, ConicError, ConicObjective, ConicOptions, Outcome, Solver};
 use super::energy::{Energy, SymmetricDirichlet};
 use super::exact::ExactLayout;
 use super::newton::{NewtonOptions, NewtonSolution, Stop, minimize};
@@ -17,6 +18,7 @@ use crate::features::Sectors;
 /// What a layout minimises, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Objective {
     /// Mean symmetric Dirichlet energy, eq. (5), by projected Newton.
     SymmetricDirichlet,
@@ -26,14 +28,37 @@ pub enum Objective {
     ArapNewton,
     /// The single global step (6) for the frames of the layout it starts from.
     Poisson,
+    /// Largest ARAP energy, eq. (8), by local steps and conic programs.
+    ArapMax,
+    /// tau, eq. (3), with frames renewed inside the interior point.
+    Tau,
+    /// tau by Algorithm 1: conic programs (9) for given frames, and new frames, in turns.
+    TauAlternating,
     /// Mean ASAP energy, eq. (10), at fixed size.
     Asap,
+    /// Largest scaled ASAP energy, eq. (11).
+    AsapMax,
+    /// Largest dilatation, with a scale per triangle, eq. (12).
+    Dilatation,
+    /// Largest dilatation by bisection over bounds on it (Lipman 2012).
+    DilatationBisection,
 }
 
 impl Objective {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::SymmetricDirichlet, Self::Arap, Self::ArapNewton, Self::Poisson, Self::Asap];
+    pub const ALL: [Self; 11] = [
+        Self::SymmetricDirichlet,
+        Self::Arap,
+        Self::ArapNewton,
+        Self::Poisson,
+        Self::ArapMax,
+        Self::Tau,
+        Self::TauAlternating,
+        Self::Asap,
+        Self::AsapMax,
+        Self::Dilatation,
+        Self::DilatationBisection,
+    ];
 
     /// Name for commands and reports.
     pub fn name(self) -> &'static str {
@@ -42,7 +67,13 @@ impl Objective {
             Self::Arap => "arap",
             Self::ArapNewton => "arap-newton",
             Self::Poisson => "poisson",
+            Self::ArapMax => "arap-max",
+            Self::Tau => "tau",
+            Self::TauAlternating => "tau-alternating",
             Self::Asap => "asap",
+            Self::AsapMax => "asap-max",
+            Self::Dilatation => "dilatation",
+            Self::DilatationBisection => "dilatation-bisection",
         }
     }
 
@@ -53,7 +84,11 @@ impl Objective {
             Self::SymmetricDirichlet => Some(Measure::SymmetricDirichlet),
             Self::Arap | Self::ArapNewton => Some(Measure::Arap),
             Self::Poisson => None,
+            Self::ArapMax => Some(Measure::ArapMax),
+            Self::Tau | Self::TauAlternating => Some(Measure::Tau),
             Self::Asap => Some(Measure::Asap),
+            Self::AsapMax => Some(Measure::AsapMax),
+            Self::Dilatation | Self::DilatationBisection => Some(Measure::Dilatation),
         }
     }
 }
@@ -65,17 +100,19 @@ impl std::fmt::Display for Objective {
 }
 
 /// Settings of the minimisers.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ObjectiveOptions {
-    /// Most iterations of a method's outer loop.
+    /// Most iterations of the outer loop of the methods without conic programs.
     pub max_iterations: usize,
-    /// Stop when the objective falls by less than this fraction in one iteration.
+    /// They stop when the objective falls by less than this fraction in one iteration.
     pub tolerance: f64,
+    /// The methods with conic programs.
+    pub conic: ConicOptions,
 }
 
 impl Default for ObjectiveOptions {
     fn default() -> Self {
-        Self { max_iterations: 1000, tolerance: 1e-8 }
+        Self { max_iterations: 1000, tolerance: 1e-8, conic: ConicOptions::default() }
     }
 }
 
@@ -126,6 +163,22 @@ pub struct Optimized {
     pub iterations: usize,
     /// How it ended.
     pub ending: Ending,
+    /// How the conic programs were solved, if there were any.
+    pub conic: Option<ConicStats>,
+}
+
+/// How the conic programs of a layout were solved.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ConicStats {
+    /// Programs solved.
+    pub programs: usize,
+    /// The solver of the last program.
+    pub solver: Solver,
+    /// How the own solver failed, if Clarabel had to take over.
+    pub fallback_from: Option<Outcome>,
+    /// For eq. (8) and (11): whether the bound reached, below 1, proves by itself that there is no flip.
+    pub injective_by_bound: Option<bool>,
 }
 
 /// Why there is no optimised layout.
@@ -137,6 +190,18 @@ pub enum OptimizeError {
     /// A linear system could not be set up or factored.
     #[error(transparent)]
     Numeric(#[from] NotPositiveDefinite),
+    /// The conic programs could not be set up.
+    #[error(transparent)]
+    Conic(ConicError),
+}
+
+impl From<ConicError> for OptimizeError {
+    fn from(error: ConicError) -> Self {
+        match error {
+            ConicError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::Conic(error),
+        }
+    }
 }
 
 /// What a method found, before it is judged.
@@ -144,6 +209,13 @@ struct Found {
     y: Vec<f64>,
     iterations: usize,
     ending: Ending,
+    conic: Option<ConicStats>,
+}
+
+impl Found {
+    fn new(y: Vec<f64>, iterations: usize, ending: Ending) -> Self {
+        Self { y, iterations, ending, conic: None }
+    }
 }
 
 /// Minimises an objective over the exact layouts, from one without flips and with the right angles.
@@ -172,13 +244,23 @@ pub fn optimize(
         Objective::ArapNewton => rigid::newton_steps(layout, y.clone(), options, watch)?,
         Objective::Poisson => rigid::poisson(sectors, layout, y.clone())?,
         Objective::Asap => similar::asap(sectors, layout, y.clone(), options, watch)?,
+        Objective::ArapMax => conic(layout, &y, ConicObjective::ArapMax, options, watch)?,
+        Objective::Tau => conic(layout, &y, ConicObjective::Tau, options, watch)?,
+        Objective::TauAlternating => {
+            conic(layout, &y, ConicObjective::TauAlternating, options, watch)?
+        }
+        Objective::AsapMax => conic(layout, &y, ConicObjective::AsapMax, options, watch)?,
+        Objective::Dilatation => conic(layout, &y, ConicObjective::Dilatation, options, watch)?,
+        Objective::DilatationBisection => {
+            conic(layout, &y, ConicObjective::DilatationBisection, options, watch)?
+        }
     };
     let value = figure.of(layout, &found.y);
     let is_better = value <= before && layout.defects(sectors, &found.y).none();
     let (mut y, value, ending) =
         if is_better { (found.y, value, found.ending) } else { (y, before, Ending::NoGain) };
     figure.rescale(layout, &mut y);
-    Ok(Optimized { y, value, before, iterations: found.iterations, ending })
+    Ok(Optimized { y, value, before, iterations: found.iterations, ending, conic: found.conic })
 }
 
 /// The figure that an objective lowers.
@@ -237,5 +319,28 @@ fn newton(
     let NewtonSolution { y, iterations, stop, .. } =
         minimize(layout.problem_mut(), y, energy, &options, watch)?;
     let ending = if stop == Stop::Converged { Ending::Converged } else { Ending::Stopped };
-    Ok(Found { y, iterations, ending })
+    Ok(Found::new(y, iterations, ending))
+}
+
+fn conic(
+    layout: &mut ExactLayout,
+    y: &[f64],
+    objective: ConicObjective,
+    options: &ObjectiveOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Found, OptimizeError> {
+    let problem = layout.problem_mut();
+    let found = conic::minimize(problem, y.to_vec(), objective, &options.conic, watch)?;
+    let ending = match found.outcome {
+        Outcome::Solved => Ending::Converged,
+        _ => Ending::Stopped,
+    };
+    let stats = ConicStats {
+        programs: found.rounds,
+        solver: found.solver_used,
+        fallback_from: found.fallback_from,
+        injective_by_bound: found.injective_by_bound,
+    };
+    let conic = Some(stats);
+    Ok(Found { y: found.y, iterations: found.iterations, ending, conic })
 }

@@ -45,7 +45,7 @@ pub(super) fn local_global(
         iterations += more;
         ending = Ending::Guarded { flips: defects.flips.len() };
     }
-    Ok(Found { y, iterations, ending })
+    Ok(Found::new(y, iterations, ending))
 }
 
 /// A triangle squeezed below this may have stopped a Newton step at the edge of the flip-free region.
@@ -70,7 +70,7 @@ pub(super) fn newton_steps(
     let energy = |y: &[f64]| problem.value(&Arap, &problem.space().expand(y));
     let y = if energy(&guarded) < energy(&plain.y) { guarded } else { plain.y };
     let ending = Ending::Guarded { flips: 0 };
-    Ok(Found { y, iterations: plain.iterations + more, ending })
+    Ok(Found::new(y, plain.iterations + more, ending))
 }
 
 /// Fraction of the way to the first collapsing triangle that a step may go.
@@ -96,7 +96,7 @@ pub(super) fn poisson(
         y = start.iter().zip(&step).map(|(from, d)| from + t * d).collect();
         ending = Ending::Guarded { flips: defects.flips.len() };
     }
-    Ok(Found { y, iterations: 1, ending })
+    Ok(Found::new(y, 1, ending))
 }
 
 /// Rotations as images of the axes.

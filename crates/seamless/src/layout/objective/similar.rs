@@ -53,7 +53,7 @@ pub(super) fn asap(
         iterations += more;
         ending = Ending::Guarded { flips: defects.flips.len() };
     }
-    Ok(Found { y, iterations, ending })
+    Ok(Found::new(y, iterations, ending))
 }
 
 /// Solves with the conformal form for the gradient of the other one.
