@@ -1,12 +1,14 @@
 //! Figures of merit of a map.
 
 mod distortion;
+mod frames;
 mod measure;
 mod scale;
 mod singular;
 mod summary;
 
 pub use distortion::{Distortion, distortion};
+pub use frames::{distance_to_frames, frames};
 pub use measure::{Aggregate, Measure};
 pub use singular::SingularValues;
 pub use summary::{Percentiles, Summary, measure_all, summarize};

@@ -1,6 +1,6 @@
 //! Signed singular values of a map, triangle by triangle.
 
-use crate::layout::energy::Jacobian;
+use super::frames::jacobian;
 use crate::layout::triangle::Triangle;
 use num_complex::Complex64;
 use seamstress_surface::{Face, FaceData, Metric, TriMesh};
@@ -84,18 +84,15 @@ fn of_face(metric: &Metric, corner_uvs: &[[f64; 2]], f: Face) -> Option<[f64; 2]
     if 2.0 * metric.area[f] <= DEGENERATE * longest * longest {
         return None;
     }
-    let [a, b, c] = [0, 1, 2].map(|k| {
-        let [u, v] = corner_uvs[3 * f.at() + k];
-        Complex64::new(u, v) / metric.unit
-    });
-    let (e1, e2) = (b - a, c - a);
-    let x = e1 / p.re;
-    let y = (e2 - x * q.re) / q.im;
-    let s1 = Jacobian::from_rows([[x.re, y.re], [x.im, y.im]]).singular_values().0;
+    let s1 = jacobian(metric, corner_uvs, f).singular_values().0;
     if s1 == 0.0 {
         return Some([0.0, 0.0]);
     }
     // The determinant keeps its digits where the difference of the two parts loses them.
-    let s2 = (e1.conj() * e2).im / (p.re * q.im) / s1;
+    let [a, b, c] = [0, 1, 2].map(|k| {
+        let [u, v] = corner_uvs[3 * f.at() + k];
+        Complex64::new(u, v) / metric.unit
+    });
+    let s2 = ((b - a).conj() * (c - a)).im / (p.re * q.im) / s1;
     Some([s1, s2])
 }
