@@ -224,6 +224,7 @@ fn half_angle(z: Complex64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::distance::{Arap, Asap, Guarded};
 
     fn at(j: [f64; 4]) -> Jacobian {
         Jacobian::from_rows([[j[0], j[1]], [j[2], j[3]]])
@@ -237,44 +238,91 @@ mod tests {
         assert_eq!((s1, s2), (1.0, -1.0));
     }
 
+    /// Gradient and Hessian in the entries of J by central differences.
+    fn differences(energy: &impl Energy, j: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+        let value = |j: [f64; 4]| {
+            let (s1, s2) = at(j).singular_values();
+            energy.value(s1, s2)
+        };
+        let shifted = |k: usize, step: f64| {
+            let mut j = j;
+            j[k] += step;
+            j
+        };
+        let step = 1e-5;
+        let slope = |k| (value(shifted(k, step)) - value(shifted(k, -step))) / (2.0 * step);
+        let second = |k| {
+            let gradient = |step| ProjectedHessian::new(energy, &at(shifted(k, step))).gradient;
+            let (up, down) = (gradient(step), gradient(-step));
+            [0, 1, 2, 3].map(|l| (up[l] - down[l]) / (2.0 * step))
+        };
+        ([0, 1, 2, 3].map(slope), [0, 1, 2, 3].map(second))
+    }
+
     fn check_derivatives(energy: &impl Energy) {
-        for j in [[1.3, 0.2, -0.4, 0.9], [0.7, -1.1, 1.0, 0.3], [1.0, 0.1, -0.1, 1.0]] {
+        let points = [[1.3, 0.2, -0.4, 0.9], [0.7, -1.1, 1.0, 0.3], [0.4, 0.1, 0.2, 0.5]];
+        for j in points {
             let hessian = ProjectedHessian::new(energy, &at(j));
-            let value = |j: [f64; 4]| {
-                let (s1, s2) = at(j).singular_values();
-                energy.value(s1, s2)
-            };
-            let shifted = |k: usize, step: f64| {
-                let mut j = j;
-                j[k] += step;
-                j
-            };
-            let step = 1e-5;
+            let (slope, second) = differences(energy, j);
             for k in 0..4 {
-                let slope = (value(shifted(k, step)) - value(shifted(k, -step))) / (2.0 * step);
-                assert!((slope - hessian.gradient[k]).abs() < 1e-7 * (1.0 + slope.abs()));
-                let [up, down] = [step, -step]
-                    .map(|s| ProjectedHessian::new(energy, &at(shifted(k, s))).gradient);
-                for l in 0..4 {
-                    let second = (up[l] - down[l]) / (2.0 * step);
-                    let model: f64 = (0..4)
-                        .map(|e| {
-                            let v = hessian.eigenvectors[e];
-                            hessian.eigenvalues[e] * v[k] * v[l]
-                        })
-                        .sum();
-                    // All eigenvalues are positive at these points, so nothing was cut off.
-                    assert!((second - model).abs() < 1e-5 * (1.0 + second.abs()), "{j:?} {k}{l}");
+                let error = (slope[k] - hessian.gradient[k]).abs();
+                assert!(error < 1e-7 * (1.0 + slope[k].abs()), "{j:?} {k}");
+            }
+            // The eigenvectors diagonalise the true Hessian; negative eigenvalues are cut off.
+            let size = second.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
+            for (a, v) in hessian.eigenvectors.iter().enumerate() {
+                for (b, w) in hessian.eigenvectors.iter().enumerate() {
+                    let form: f64 =
+                        (0..4).map(|k| (0..4).map(|l| v[k] * second[k][l] * w[l]).sum::<f64>()).sum();
+                    let expected = if a == b { hessian.eigenvalues[a] } else { 0.0 };
+                    let found = if a == b { form.max(0.0) } else { form };
+                    assert!((found - expected).abs() < 1e-5 * size, "{j:?} {a} {b}: {form}");
                 }
             }
         }
     }
 
+    fn check_jet(energy: &impl Energy) {
+        for (s1, s2) in [(1.4, 0.8), (2.0, 0.3), (0.6, 0.5)] {
+            let jet = energy.jet(s1, s2);
+            let step = 1e-6;
+            let slopes = |of: &dyn Fn(f64, f64) -> f64| {
+                [
+                    (of(s1 + step, s2) - of(s1 - step, s2)) / (2.0 * step),
+                    (of(s1, s2 + step) - of(s1, s2 - step)) / (2.0 * step),
+                ]
+            };
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-6 * (1.0 + b.abs());
+            assert!(near(jet.value, energy.value(s1, s2)));
+            let d = slopes(&|a, b| energy.value(a, b));
+            assert!(near(d[0], jet.d[0]) && near(d[1], jet.d[1]), "{d:?} {:?}", jet.d);
+            let d1 = slopes(&|a, b| energy.jet(a, b).d[0]);
+            let d2 = slopes(&|a, b| energy.jet(a, b).d[1]);
+            assert!(near(d1[0], jet.dd[0]) && near(d1[1], jet.dd[1]), "{d1:?} {:?}", jet.dd);
+            assert!(near(d2[0], jet.dd[1]) && near(d2[1], jet.dd[2]), "{d2:?} {:?}", jet.dd);
+        }
+    }
+
     #[test]
     fn derivatives_match_differences() {
-        check_derivatives(&SymmetricDirichlet);
-        check_derivatives(&PowerOfDirichlet { p: 4, bound: 5.0 });
-        check_derivatives(&Untangling { eps: 0.3 });
+        fn check(energy: &impl Energy) {
+            check_jet(energy);
+            check_derivatives(energy);
+        }
+        check(&SymmetricDirichlet);
+        check(&PowerOfDirichlet { p: 4, bound: 5.0 });
+        check(&Untangling { eps: 0.3 });
+        check(&Arap);
+        check(&Asap { reward: 0.2 });
+        check(&Guarded { energy: Arap, weight: 0.1 });
+        check(&Guarded { energy: Asap { reward: 0.1 }, weight: 0.05 });
+    }
+
+    #[test]
+    fn some_eigenvalues_of_arap_are_cut_off() {
+        // Pressed together, a triangle would rather buckle: the twist has negative curvature.
+        let hessian = ProjectedHessian::new(&Arap, &at([0.4, 0.0, 0.0, 0.5]));
+        assert!(hessian.eigenvalues.contains(&0.0));
     }
 
     #[test]

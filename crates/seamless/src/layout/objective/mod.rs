@@ -250,9 +250,11 @@ pub fn optimize(
             conic(layout, &y, ConicObjective::TauAlternating, options, watch)?
         }
         Objective::AsapMax => conic(layout, &y, ConicObjective::AsapMax, options, watch)?,
-        Objective::Dilatation => conic(layout, &y, ConicObjective::Dilatation, options, watch)?,
+        Objective::Dilatation => {
+            dilatation(layout, &y, ConicObjective::Dilatation, options, watch)?
+        }
         Objective::DilatationBisection => {
-            conic(layout, &y, ConicObjective::DilatationBisection, options, watch)?
+            dilatation(layout, &y, ConicObjective::DilatationBisection, options, watch)?
         }
     };
     let value = figure.of(layout, &found.y);
@@ -343,4 +345,23 @@ fn conic(
     };
     let conic = Some(stats);
     Ok(Found { y: found.y, iterations: found.iterations, ending, conic })
+}
+
+/// A method for the dilatation, then programs (11) from where it settles: their measure
+/// `(K - 1)^2 / (K^2 + 1)` orders layouts as K does, and they may find more.
+fn dilatation(
+    layout: &mut ExactLayout,
+    y: &[f64],
+    objective: ConicObjective,
+    options: &ObjectiveOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Found, OptimizeError> {
+    let first = conic(layout, y, objective, options, watch)?;
+    let second = conic(layout, &first.y, ConicObjective::AsapMax, options, watch)?;
+    let conic = first.conic.zip(second.conic).map(|(a, b)| ConicStats {
+        programs: a.programs + b.programs,
+        fallback_from: a.fallback_from.or(b.fallback_from),
+        ..b
+    });
+    Ok(Found { iterations: first.iterations + second.iterations, conic, ..second })
 }

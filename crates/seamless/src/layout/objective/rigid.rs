@@ -35,7 +35,7 @@ pub(super) fn local_global(
             break;
         }
         energy = now;
-        y = poisson.solve(&targets(&rotations));
+        y = poisson.follow(&targets(&rotations));
         iterations += 1;
     }
     let defects = layout.defects(sectors, &y);

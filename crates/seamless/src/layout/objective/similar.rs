@@ -9,6 +9,7 @@ use super::guarded::FADE;
 use super::{Ending, Found, ObjectiveOptions, OptimizeError};
 use crate::features::Sectors;
 use crate::layout::distance::{Asap, Guarded};
+use crate::layout::energy::Jacobian;
 use crate::layout::exact::ExactLayout;
 use crate::layout::newton::{NewtonOptions, minimize};
 use crate::layout::problem::LayoutProblem;
@@ -16,7 +17,9 @@ use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 
 /// Shift of the conformal form against rotations of a free boundary, as a fraction of its mean diagonal.
-const SHIFT: f64 = 1e-9;
+const SHIFT: f64 = 1e-11;
+/// Refinements of each solution: the shift is felt on meshes with needles otherwise.
+const REFINEMENTS: usize = 2;
 
 /// Inverse iteration until the quotient settles. Where it ends with flips, Newton steps from the start
 /// behind a barrier.
@@ -58,17 +61,34 @@ pub(super) fn asap(
 
 /// Solves with the conformal form for the gradient of the other one.
 fn step(problem: &mut LayoutProblem, y: &[f64]) -> (Vec<f64>, f64) {
+    let goal = gradient(problem, y, |j, g| j.similar * g);
+    let mut next = goal.clone();
+    problem.solve(&mut next);
+    for _ in 0..REFINEMENTS {
+        let reached = gradient(problem, &next, |j, g| 2.0 * j.anti * g.conj());
+        let mut correction: Vec<f64> = goal.iter().zip(&reached).map(|(b, c)| b - c).collect();
+        problem.solve(&mut correction);
+        next.iter_mut().zip(correction).for_each(|(y, d)| *y += d);
+    }
+    normalized(problem, next)
+}
+
+/// Gradient in the unknowns of a function of the Jacobians, from its part in each corner with hat
+/// function gradient `g`.
+fn gradient(
+    problem: &LayoutProblem,
+    y: &[f64],
+    part: impl Fn(&Jacobian, Complex64) -> Complex64,
+) -> Vec<f64> {
     let z = problem.space().expand(y);
     let mut b = vec![Complex64::ZERO; problem.space().n_wedges()];
     for t in problem.triangles() {
-        let similar = t.jacobian(&z).similar;
+        let jacobian = t.jacobian(&z);
         for (w, g) in t.wedges.iter().zip(t.gradients) {
-            b[*w as usize] += t.weight * similar * Complex64::new(g[0], g[1]);
+            b[*w as usize] += t.weight * part(&jacobian, Complex64::new(g[0], g[1]));
         }
     }
-    let mut next = problem.space().pull_back(&b);
-    problem.solve(&mut next);
-    normalized(problem, next)
+    problem.space().pull_back(&b)
 }
 
 /// The unknowns scaled to triangles of mean square scale 1, and the energy then.
