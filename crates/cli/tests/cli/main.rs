@@ -10,5 +10,6 @@ mod features;
 mod fields;
 mod harness;
 mod integer;
+mod layout;
 mod map;
 mod quads;

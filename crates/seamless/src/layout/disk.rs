@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn disks_are_embedded_without_flips_and_others_refused() {
-        for soup in [kit::saddle(9), kit::fan(5), kit::monkey_saddle(6)] {
+        for soup in [kit::saddle(9), kit::fan(5, 1.0, true), kit::monkey_saddle(6)] {
             let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
             let metric = Metric::from_positions(&mesh, &soup.positions);
             let uvs = embed_disk(&mesh, &metric).unwrap();

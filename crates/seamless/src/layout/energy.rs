@@ -272,8 +272,9 @@ mod tests {
             let size = second.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
             for (a, v) in hessian.eigenvectors.iter().enumerate() {
                 for (b, w) in hessian.eigenvectors.iter().enumerate() {
-                    let form: f64 =
-                        (0..4).map(|k| (0..4).map(|l| v[k] * second[k][l] * w[l]).sum::<f64>()).sum();
+                    let form: f64 = (0..4)
+                        .map(|k| (0..4).map(|l| v[k] * second[k][l] * w[l]).sum::<f64>())
+                        .sum();
                     let expected = if a == b { hessian.eigenvalues[a] } else { 0.0 };
                     let found = if a == b { form.max(0.0) } else { form };
                     assert!((found - expected).abs() < 1e-5 * size, "{j:?} {a} {b}: {form}");

@@ -21,7 +21,7 @@ pub enum Measure {
     /// The same at the scale of its least maximum, the measure of eq. (8).
     ArapMax,
     /// `(sigma_1 - s)^2 + (sigma_2 - s)^2` at its best `s = (sigma_1 + sigma_2) / 2`, eq. (10), at the global
-    /// scale where the `s` of the triangles have mean square 1.
+    /// scale where `(sigma_1^2 + sigma_2^2) / 2` has mean 1.
     Asap,
     /// `(sigma_1 / s - 1)^2 + (sigma_2 / s - 1)^2` at its best `s`, eq. (11):
     /// `(sigma_1 - sigma_2)^2 / (sigma_1^2 + sigma_2^2)`; independent of scale.

@@ -23,7 +23,7 @@ pub(super) fn of_symmetric_dirichlet(singular: &SingularValues) -> f64 {
 pub(super) fn of_arap(singular: &SingularValues) -> f64 {
     let sums = SingularValues::mean(singular.measured(), |[s1, s2]| s1 + s2);
     let squares = SingularValues::mean(singular.measured(), |[s1, s2]| s1 * s1 + s2 * s2);
-    sensible(sums / squares)
+    not_negative(sums / squares)
 }
 
 /// Bisections of the slope: the interval shrinks below the last digit.
@@ -48,14 +48,18 @@ pub(super) fn of_arap_max(singular: &SingularValues) -> f64 {
             low = s;
         }
     }
-    sensible(0.5 * (low + high))
+    not_negative(0.5 * (low + high))
 }
 
-/// Gives the best scales of the triangles, `(sigma_1 + sigma_2) / 2`, the mean square 1. The energy itself
-/// would be least at scale zero.
+/// Gives `(sigma_1^2 + sigma_2^2) / 2` the mean 1. The energy itself would be least at scale zero.
 pub(super) fn of_asap(singular: &SingularValues) -> f64 {
-    let squares = SingularValues::mean(singular.measured(), |[s1, s2]| (0.5 * (s1 + s2)).powi(2));
+    let squares = SingularValues::mean(singular.measured(), |[s1, s2]| 0.5 * (s1 * s1 + s2 * s2));
     sensible(1.0 / squares.sqrt())
+}
+
+/// Where rotations are no nearer than nothing, as for reflections, the best scale is zero.
+fn not_negative(scale: f64) -> f64 {
+    if scale >= 0.0 && scale.is_finite() { scale } else { 1.0 }
 }
 
 fn sensible(scale: f64) -> f64 {

@@ -1,9 +1,11 @@
 //! The distance to similarities: ASAP at fixed size.
 //!
 //! The energy (10) alone is least when everything shrinks to a point. Held against the mean square of the
-//! triangles' scales `s = (sigma_1 + sigma_2) / 2` it is a quotient of two quadratic forms. Local and global
-//! steps with a rescaling between them are the power method for its smallest eigenvalue; inverse iteration
-//! finds the same eigenvector in a few steps (spectral conformal maps, Mullen et al. 2008).
+//! triangles' scales `s = (sigma_1 + sigma_2) / 2` it is a quotient of two quadratic forms, which orders
+//! layouts as the measure does: that divides by `(sigma_1^2 + sigma_2^2) / 2`, the square of s and half the
+//! energy. Local and global steps with a rescaling between them are the power method for its smallest
+//! eigenvalue; inverse iteration finds the same eigenvector in a few steps (spectral conformal maps, Mullen
+//! et al. 2008).
 
 use super::guarded::FADE;
 use super::{Ending, Found, ObjectiveOptions, OptimizeError};
@@ -150,4 +152,58 @@ fn to_unit_area(problem: &LayoutProblem, y: &mut [f64]) -> f64 {
     let scale = 1.0 / area.sqrt();
     y.iter_mut().for_each(|x| *x *= scale);
     energy / area
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::disk::embed_disk;
+    use crate::layout::distance::Arap;
+    use crate::layout::objective::guarded::minimize_guarded;
+    use crate::layout::objective::rigid;
+    use crate::{SeamlessMap, Tolerance};
+    use seamstress_surface::Metric;
+    use seamstress_testkit as kit;
+    use std::ops::ControlFlow;
+
+    fn disk() -> (TriMesh, ExactLayout, Vec<f64>) {
+        let soup = kit::saddle(6);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let uvs = embed_disk(&mesh, &metric).unwrap();
+        let map = SeamlessMap::certify(&mesh, uvs, &Tolerance::default()).unwrap();
+        let (layout, y) = ExactLayout::from_map(&mesh, &metric, &map).unwrap();
+        (mesh, layout, y)
+    }
+
+    #[test]
+    fn inverse_iteration_and_the_barrier_agree() {
+        let (mesh, mut layout, y) = disk();
+        let mut go_on = |_| ControlFlow::Continue(());
+        let mut watch = Watch::new(&mut go_on, 0, 1);
+        let options = ObjectiveOptions::default();
+        let found = asap(&mesh, &mut layout, y.clone(), &options, &mut watch).unwrap();
+        assert_eq!(found.ending, Ending::Converged);
+        let (_, spectral) = normalized(layout.problem(), found.y);
+        let (slow, _) = behind_barrier(layout.problem_mut(), y, &mut watch).unwrap();
+        let (_, guarded) = normalized(layout.problem(), slow);
+        assert!(
+            spectral <= guarded * (1.0 + 1e-9) && guarded < 1.05 * spectral,
+            "{spectral} {guarded}"
+        );
+    }
+
+    #[test]
+    fn a_barrier_that_fades_out_changes_nothing_where_it_is_not_needed() {
+        let (_, mut layout, y) = disk();
+        let mut go_on = |_| ControlFlow::Continue(());
+        let mut watch = Watch::new(&mut go_on, 0, 1);
+        let options = ObjectiveOptions::default();
+        let plain = rigid::newton_steps(&mut layout, y.clone(), &options, &mut watch).unwrap();
+        let problem = layout.problem_mut();
+        let (guarded, _) = minimize_guarded(problem, y, Arap, &mut watch).unwrap();
+        let energy = |y: &[f64]| problem.value(&Arap, &problem.space().expand(y));
+        let (a, b) = (energy(&plain.y), energy(&guarded));
+        assert!((a - b).abs() < 1e-3 * a, "{a} {b}");
+    }
 }
