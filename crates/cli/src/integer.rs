@@ -78,7 +78,7 @@ fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
     // One check per quad, unless told otherwise.
     let texture = args.texture.or_period(1.0);
     let pictures = match &args.pictures {
-        Some(_) => Some(pictures::draw(&mesh.soup, solution.map.seamless(), &texture)),
+        Some(_) => Some(pictures::draw(&mesh.soup, solution.map.seamless(), None, &texture)),
         None => None,
     };
     let pictures = pictures

@@ -84,7 +84,7 @@ fn make(args: &LayoutArgs, mut worker: Worker) -> Result<Product, Failure> {
     let pictures = args
         .pictures
         .as_ref()
-        .map(|_| pictures::draw(&mesh.soup, &solution.map, &args.texture))
+        .map(|_| pictures::draw(&mesh.soup, &solution.map, None, &args.texture))
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
     Ok(Product { mesh, solution, pictures })
@@ -204,7 +204,7 @@ fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) 
         rows.extend(stats.conic.map(conic_row));
     }
     rows.extend(summary::map_rows(&solution.map, &solution.distortion));
-    rows.push(summary::cost_row(cost, &[]));
+    rows.push(summary::cost_row(cost, std::iter::empty()));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
     rows.push(row("written", &names.join(", ")));

@@ -5,6 +5,7 @@ mod common;
 
 use common::{collection, surface, unwatched};
 use num_complex::Complex64;
+use seamstress::features::Sectors;
 use seamstress::layout::conic::{
     ConicError, ConicMinimum, ConicObjective, ConicOptions, Outcome, Program, Solver,
     SolverOptions, minimize, solve,
@@ -219,7 +220,7 @@ fn minima_are_free_of_flips_and_of_their_own_measure() {
         let (mut layout, y) = mapped(&soup);
         for objective in MEASURES {
             let found = minimum(&mut layout, &y, objective);
-            assert!(layout.defects(&mesh, &found.y).none());
+            assert!(layout.defects(&Sectors::unaligned(&mesh), &found.y).none());
             let z = layout.expand(&found.y);
             let value = objective.value(layout.problem(), None, &z);
             assert!((value - found.value).abs() < 1e-9 * found.value.max(1.0));
@@ -337,7 +338,7 @@ fn the_polish_keeps_to_its_budget_and_to_its_time() {
             if let Some(found) = found {
                 let (energy, tau) = layout.distortion(&found.y);
                 assert!(energy <= least * (1.0 + max_energy_rise) && tau < before);
-                assert!(layout.defects(&mesh, &found.y).none());
+                assert!(layout.defects(&Sectors::unaligned(&mesh), &found.y).none());
             } else {
                 assert!(max_energy_rise < 0.02, "a generous budget gains something");
             }

@@ -10,6 +10,7 @@ use seamstress::consistency::{
     SeamMatching, consistent_cut, lifted_angles, make_consistent, matched_by_angles,
 };
 use seamstress::cut::{DualTree, curvature_weight};
+use seamstress::features::Sectors;
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_testkit::{self as kit, CheckedSeam, Rng, consistency_faults};
@@ -38,8 +39,9 @@ impl Problem {
     fn naive(soup: TriangleSoup) -> Self {
         let (mesh, metric) = surface(&soup);
         let tree = DualTree::lightest(&mesh, curvature_weight(&mesh, &metric));
-        let matched = seamstress::rounding::MatchedCut::new(&mesh, &metric, tree);
-        let indices = matched.cone_indices(&mesh, &metric);
+        let matched =
+            seamstress::rounding::MatchedCut::new(&Sectors::unaligned(&mesh), &metric, tree);
+        let indices = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         Self::new(soup, indices.iter().map(|&k| f64::from(k)).collect())
     }
 
@@ -330,7 +332,7 @@ fn a_good_map_is_consistent_as_it_is() {
     let tree = DualTree::lightest(&mesh, curvature_weight(&mesh, &metric));
     let matched = matched_by_angles(&mesh, &metric, tree, &angles);
     let cones: Vec<(u32, i32)> = solution.map.cones().iter().map(|c| (c.vertex, c.index)).collect();
-    let found = matched.cone_indices(&mesh, &metric);
+    let found = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
     let found: Vec<_> =
         found.enumerate().filter(|(_, k)| **k != 0).map(|(v, &k)| (v.0, k)).collect();
     assert_eq!(found, cones);
@@ -371,7 +373,7 @@ fn a_vertex_dragged_through_an_edge_keeps_its_index() {
     let (mended, _) =
         unwatched(|watch| consistent_cut(&mesh, &metric, &matched, &angles, &options, watch))
             .unwrap();
-    assert_eq!(mended.cone_indices(&mesh, &metric)[centre], 0);
+    assert_eq!(mended.sector_indices(&Sectors::unaligned(&mesh), &metric)[centre], 0);
 }
 
 #[test]

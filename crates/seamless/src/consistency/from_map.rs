@@ -133,7 +133,8 @@ pub fn transitions(
         let corners = piece.faces.iter().flat_map(|f| f.halfedges());
         let local: HalfedgeData<f64> = corners.map(|h| angles[h]).collect();
         let matched = matched_by_angles(&piece.mesh, &metric, tree, &local);
-        for (v, &k) in matched.sector_indices(&Sectors::unaligned(&piece.mesh), &metric).enumerate() {
+        for (v, &k) in matched.sector_indices(&Sectors::unaligned(&piece.mesh), &metric).enumerate()
+        {
             indices[piece.vertices[v]] = k;
         }
     }
@@ -168,8 +169,11 @@ pub fn consistent_cut(
     let seams: Vec<SeamMatching> = pairs
         .map(|(&left, &r)| SeamMatching { left, matching: f64::from(r), set: MatchingSet::Integer })
         .collect();
-    let indices: VertexData<f64> =
-        matched.sector_indices(&Sectors::unaligned(mesh), metric).iter().map(|&k| f64::from(k)).collect();
+    let indices: VertexData<f64> = matched
+        .sector_indices(&Sectors::unaligned(mesh), metric)
+        .iter()
+        .map(|&k| f64::from(k))
+        .collect();
     let input = ConsistencyInput { angles, indices: &indices, seams: &seams };
     let consistent = make_consistent(mesh, &input, options, watch)?;
     let matching = consistent.matchings.iter().map(|r| r.round() as i32).collect();

@@ -48,7 +48,7 @@ pub fn connections(
         crossings: 0,
     };
     for h in mesh.halfedges().filter(|&h| is_cone[mesh.origin(h)]) {
-        search.from_corner(h);
+        search.look_from(h);
     }
     let graph = SeamGraph::new(mesh, cut, is_cone);
     let mut connections = Vec::with_capacity(search.found.len());
@@ -174,7 +174,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn from_corner(&mut self, h: Halfedge) {
+    fn look_from(&mut self, h: Halfedge) {
         let origin = self.z[h];
         let (right, left) = (self.z[h.next()] - origin, self.z[h.prev()] - origin);
         let mut crossed = Vec::new();

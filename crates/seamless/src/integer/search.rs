@@ -150,9 +150,9 @@ impl<'a> Search<'a> {
             let row = self.matrix.row(i);
             for step in [1, -1] {
                 let own = self.cost((i, step));
-                for j in 0..i {
+                for (j, entry) in row.iter().enumerate().take(i) {
                     for other in [1, -1] {
-                        let coupling = 2.0 * (step * other) as f64 * row[j];
+                        let coupling = 2.0 * (step * other) as f64 * entry;
                         let cost = own + self.cost((j, other)) + coupling;
                         if cost < limit {
                             pairs.push((cost, [(j, other), (i, step)]));

@@ -264,9 +264,9 @@ mod tests {
         for j in points {
             let hessian = ProjectedHessian::new(energy, &at(j));
             let (slope, second) = differences(energy, j);
-            for k in 0..4 {
-                let error = (slope[k] - hessian.gradient[k]).abs();
-                assert!(error < 1e-7 * (1.0 + slope[k].abs()), "{j:?} {k}");
+            for (k, (slope, gradient)) in slope.iter().zip(hessian.gradient).enumerate() {
+                let error = (slope - gradient).abs();
+                assert!(error < 1e-7 * (1.0 + slope.abs()), "{j:?} {k}");
             }
             // The eigenvectors diagonalise the true Hessian; negative eigenvalues are cut off.
             let size = second.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));

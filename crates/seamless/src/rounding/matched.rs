@@ -49,7 +49,8 @@ impl MatchedCut {
 
     /// The same matchings over another metric of the same mesh.
     pub fn with_metric(&self, sectors: &Sectors<'_>, metric: &Metric) -> Self {
-        let isometric = isometric::rotations(sectors.slit(), &metric.angle, &self.tree, &self.turning);
+        let isometric =
+            isometric::rotations(sectors.slit(), &metric.angle, &self.tree, &self.turning);
         Self { isometric, ..self.clone() }
     }
 

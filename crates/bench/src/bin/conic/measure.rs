@@ -59,8 +59,7 @@ pub(crate) fn measure(
         Choice::AsapMax => ConicObjective::AsapMax,
         Choice::Dilatation => ConicObjective::Dilatation,
     };
-    let mut options = SolverOptions::default();
-    options.tolerance = tolerance;
+    let options = SolverOptions { tolerance, ..SolverOptions::default() };
     let mut observe = |_| ControlFlow::Continue(());
     let mut watch = Watch::new(&mut observe, 0, 1);
 

@@ -6,6 +6,7 @@ use seamstress::consistency::{
     matched_by_angles,
 };
 use seamstress::cut::{DualTree, curvature_weight};
+use seamstress::features::Sectors;
 use seamstress::layout::isometric::frames_of_angles;
 use seamstress::layout::safeguards::lay_out;
 use seamstress::progress::Watch;
@@ -154,7 +155,8 @@ impl Piece {
         outcome.cones[0] += self.cones(&matched);
         let angles = match damage {
             Damage::Naive => {
-                matched = MatchedCut::new(&self.mesh, &self.metric, matched.tree);
+                matched =
+                    MatchedCut::new(&Sectors::unaligned(&self.mesh), &self.metric, matched.tree);
                 self.metric.angle.clone()
             }
             Damage::Matchings => {
@@ -173,7 +175,11 @@ impl Piece {
     }
 
     fn cones(&self, matched: &MatchedCut) -> usize {
-        matched.cone_indices(&self.mesh, &self.metric).iter().filter(|&&k| k != 0).count()
+        matched
+            .sector_indices(&Sectors::unaligned(&self.mesh), &self.metric)
+            .iter()
+            .filter(|&&k| k != 0)
+            .count()
     }
 
     fn consistent(
@@ -205,7 +211,7 @@ impl Piece {
                 set: 'i',
             })
             .collect();
-        let indices = before.cone_indices(&self.mesh, &self.metric);
+        let indices = before.sector_indices(&Sectors::unaligned(&self.mesh), &self.metric);
         let indices: Vec<f64> = indices.iter().map(|&k| f64::from(k)).collect();
         consistency_faults(&faces, &indices, &after.indices, &after.angles, &seams)
     }
@@ -215,7 +221,13 @@ impl Piece {
         let mut watch = Watch::new(&mut go_on, 0, 1);
         let tree = &matched.tree;
         let frames = frames_of_angles(&self.mesh, &self.metric, &consistent.angles, tree);
-        match lay_out(&self.mesh, &self.metric, matched, Some(&frames), &mut watch) {
+        match lay_out(
+            &Sectors::unaligned(&self.mesh),
+            &self.metric,
+            matched,
+            Some(&frames),
+            &mut watch,
+        ) {
             Ok(laid) => {
                 let z = laid.layout.expand(&laid.y);
                 let uv = |h| z[laid.layout.cut.wedge[h] as usize];

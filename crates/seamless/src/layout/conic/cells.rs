@@ -97,9 +97,9 @@ impl Cones<3, 3> for StretchCones {
                 block[2 + j][i] = block[i][2 + j];
             }
         }
-        for i in 0..4 {
-            for j in 0..4 {
-                block[i][j] -= epigraph.row[i] * epigraph.row[j] * epigraph.inverse;
+        for (row, x) in block.iter_mut().zip(epigraph.row) {
+            for (entry, y) in row.iter_mut().zip(epigraph.row) {
+                *entry -= x * y * epigraph.inverse;
             }
         }
         let share = b[0][0] * epigraph.inverse;

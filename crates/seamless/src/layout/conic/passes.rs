@@ -170,15 +170,15 @@ pub(super) fn correction<const D: usize, const C: usize, K: Cones<D, C>>(
 ) -> Tally {
     Tally::of(problem.assemble_vector(cells, rhs, |t, cell, tally: &mut Tally, local| {
         let mut pull = [[0.0; D]; C];
-        for c in 0..C {
+        for (c, pull) in pull.iter_mut().enumerate() {
             let w = &cell.scaling[c];
             let point = w.apply(&cell.dual[c]);
             let cross =
                 product(&w.apply_inverse(&cell.slack_step[c]), &w.apply(&cell.dual_step[c]));
             let mut wanted = cross.map(|x| -x);
             wanted[0] += target;
-            pull[c] = w.apply_inverse(&quotient(&wanted, &point));
-            cell.dual_step[c] = std::array::from_fn(|k| pull[c][k] - cell.dual[c][k]);
+            *pull = w.apply_inverse(&quotient(&wanted, &point));
+            cell.dual_step[c] = std::array::from_fn(|k| pull[k] - cell.dual[c][k]);
         }
         let adjoint = K::adjoint(cell.frame, &pull);
         let e = &cell.elimination;

@@ -9,11 +9,11 @@ use super::conic::{self, ConicError, ConicObjective, ConicOptions, Outcome, Solv
 use super::energy::{Energy, SymmetricDirichlet};
 use super::exact::ExactLayout;
 use super::newton::{NewtonOptions, NewtonSolution, Stop, minimize};
+use crate::features::Sectors;
 use crate::progress::{Cancelled, Watch};
 use crate::quality::{Measure, summarize};
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
-use crate::features::Sectors;
 
 /// What a layout minimises, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]

@@ -162,7 +162,7 @@ mod tests {
     use crate::layout::objective::guarded::minimize_guarded;
     use crate::layout::objective::rigid;
     use crate::{SeamlessMap, Tolerance};
-    use seamstress_surface::Metric;
+    use seamstress_surface::{Metric, TriMesh};
     use seamstress_testkit as kit;
     use std::ops::ControlFlow;
 
@@ -182,7 +182,8 @@ mod tests {
         let mut go_on = |_| ControlFlow::Continue(());
         let mut watch = Watch::new(&mut go_on, 0, 1);
         let options = ObjectiveOptions::default();
-        let found = asap(&mesh, &mut layout, y.clone(), &options, &mut watch).unwrap();
+        let found =
+            asap(&Sectors::unaligned(&mesh), &mut layout, y.clone(), &options, &mut watch).unwrap();
         assert_eq!(found.ending, Ending::Converged);
         let (_, spectral) = normalized(layout.problem(), found.y);
         let (slow, _) = behind_barrier(layout.problem_mut(), y, &mut watch).unwrap();
