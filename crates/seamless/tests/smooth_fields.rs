@@ -6,6 +6,7 @@ mod common;
 
 use common::{assert_seamless, mesh_of, surface, unwatched};
 use seamstress::cut::DualTree;
+use seamstress::features::Sectors;
 use seamstress::field::{smooth_field, smooth_frames};
 use seamstress::layout::safeguards::Route;
 use seamstress::rounding::MatchedCut;
@@ -25,7 +26,7 @@ fn classical(soup: &TriangleSoup, options: &FieldMapOptions) -> FieldMap {
 fn energy(soup: &TriangleSoup, matched: &MatchedCut) -> f64 {
     let (mesh, metric) = surface(soup);
     let frames = smooth_frames(&mesh, &metric, matched).unwrap();
-    let full = matched.matching_per_halfedge(&mesh);
+    let full = matched.matching_per_halfedge(&Sectors::unaligned(&mesh));
     let term = |h: seamstress_surface::Halfedge| {
         let t = mesh.twin(h).unwrap();
         let edge = |g: seamstress_surface::Halfedge| {
@@ -42,7 +43,11 @@ fn energy(soup: &TriangleSoup, matched: &MatchedCut) -> f64 {
 
 fn cut(soup: &TriangleSoup) -> MatchedCut {
     let (mesh, metric) = surface(soup);
-    MatchedCut::new(&mesh, &metric, DualTree::lightest(&mesh, |h| metric.length[h]))
+    MatchedCut::new(
+        &Sectors::unaligned(&mesh),
+        &metric,
+        DualTree::lightest(&mesh, |h| metric.length[h]),
+    )
 }
 
 #[test]
@@ -55,7 +60,7 @@ fn the_energy_is_that_of_the_frames_and_below_that_of_rounding_at_once() {
         assert_eq!(frames.len(), mesh.n_faces());
         assert!((energy(&soup, &matched) - stats.energy).abs() < 1e-6 * stats.energy.max(1e-3));
         assert!(stats.energy < energy(&soup, &at_once));
-        let index: i32 = matched.cone_indices(&mesh, &metric).iter().sum();
+        let index: i32 = matched.sector_indices(&Sectors::unaligned(&mesh), &metric).iter().sum();
         if !mesh.has_boundary() {
             assert_eq!(i64::from(index), 4 * mesh.euler_characteristic());
         }
