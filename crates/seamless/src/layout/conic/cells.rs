@@ -172,7 +172,7 @@ mod tests {
     use super::super::cone::dot;
     use super::*;
 
-    const Q: [f64; 4] = [1.3, 0.4, -0.2, 0.3];
+    const Q: [f64; 4] = [1.3, 0.4, -0.1, 0.15];
 
     /// `L^T W^-2 L` applied to a step, without eliminating anything.
     fn normal_product<const D: usize, const C: usize, K: Cones<D, C>>(
