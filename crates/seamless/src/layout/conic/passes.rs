@@ -169,16 +169,17 @@ pub(super) fn correction<const D: usize, const C: usize, K: Cones<D, C>>(
     rhs: &mut [f64],
 ) -> Tally {
     Tally::of(problem.assemble_vector(cells, rhs, |t, cell, tally: &mut Tally, local| {
-        let mut pull = [[0.0; D]; C];
-        for (c, pull) in pull.iter_mut().enumerate() {
+        let pull: [[f64; D]; C] = std::array::from_fn(|c| {
             let w = &cell.scaling[c];
-            let point = w.apply(&cell.dual[c]);
-            let cross =
-                product(&w.apply_inverse(&cell.slack_step[c]), &w.apply(&cell.dual_step[c]));
+            let (primal, dual) = (&cell.slack_step[c], &cell.dual_step[c]);
+            let cross = product(&w.apply_inverse(primal), &w.apply(dual));
             let mut wanted = cross.map(|x| -x);
             wanted[0] += target;
-            *pull = w.apply_inverse(&quotient(&wanted, &point));
-            cell.dual_step[c] = std::array::from_fn(|k| pull[k] - cell.dual[c][k]);
+            w.apply_inverse(&quotient(&wanted, &w.apply(&cell.dual[c])))
+        });
+        cell.dual_step = pull;
+        for (step, dual) in cell.dual_step.iter_mut().zip(&cell.dual) {
+            step.iter_mut().zip(dual).for_each(|(step, dual)| *step -= dual);
         }
         let adjoint = K::adjoint(cell.frame, &pull);
         let e = &cell.elimination;
