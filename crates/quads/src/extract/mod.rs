@@ -221,6 +221,6 @@ fn uv_area(mesh: &TriMesh, map: &GridMap) -> f64 {
         let [a, b, c] = map.triangle(face);
         Point::orientation(a, b, c)
     });
-    // Exact: a sum of 2^32 products of 114 bits would not fit, but the areas of a map that is worked on do.
+    // Exact: the area is at most the number of pieces, which is limited.
     twice.fold(0i128, i128::saturating_add) as f64 / (2.0 * one * one)
 }
