@@ -24,10 +24,6 @@ use std::time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;
-/// Connections that block the way are looked for up to this length, grid units.
-const LEARNING_RADIUS: f64 = 1.5;
-/// Times a blocked way is learned from before the grid is made finer.
-const MOST_LESSONS: i32 = 6;
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried.
@@ -87,8 +83,6 @@ pub struct IntegerStats {
     pub constraints: usize,
     /// Times the rounding started over with other priorities.
     pub restarts: usize,
-    /// Connections that were constrained because they blocked the way.
-    pub learned: usize,
     /// Moves that carried the layout to the integers.
     pub moves: usize,
     /// Newton iterations after that.
@@ -138,8 +132,6 @@ pub(super) struct IntegerProblem<'a> {
     near: (f64, Vec<Connection>),
     /// Two sides of every triangle whose corners are all cones.
     triangles: Vec<[Connection; 2]>,
-    /// Connections that blocked the way before, and the coordinates of the layout they were found in.
-    learned: Vec<(Connection, Vec<f64>)>,
     /// Mesh length of a mean edge.
     unit: f64,
     seconds: f64,
@@ -198,7 +190,6 @@ impl<'a> IntegerProblem<'a> {
             matrix,
             near,
             triangles,
-            learned: Vec::new(),
             unit,
             seconds,
         })
@@ -275,64 +266,39 @@ impl<'a> IntegerProblem<'a> {
         Ok((map.corner_uvs().to_vec(), columns))
     }
 
-    /// Rounds and moves there; where the way is blocked, rounds again with the connections that collapse
-    /// there constrained as well.
+    /// Rounds, moves there and polishes.
     fn round_and_move(
         &mut self,
         h: f64,
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<Gauss>, Vec<f64>), IntegerFailure> {
-        for lesson in 0.. {
-            watch.tick(f64::from(lesson) / f64::from(MOST_LESSONS + 1))?;
-            let clock = Instant::now();
-            let rounding = self.rounding_problem(h)?;
-            let rounded = round_constrained(&rounding)?;
-            let variables = self.integers(&rounded)?;
-            stats.constraints = rounding.constraints.len();
-            stats.restarts += rounded.restarts;
-            stats.seconds_rounding += clock.elapsed().as_secs_f64();
-            if rounded.violated > 0 {
-                return Err(IntegerFailure::Conflict { violated: rounded.violated });
-            }
-            let clock = Instant::now();
-            let target = in_layout(&variables, h);
-            let advance = advance(&mut self.problem, self.y.clone(), &target, watch)?;
-            stats.seconds_moving += clock.elapsed().as_secs_f64();
-            stats.moves = advance.moves;
-            let reached = advance.reached;
-            if reached == 1.0 {
-                let clock = Instant::now();
-                let y = advance.y;
-                let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
-                stats.seconds_polish += clock.elapsed().as_secs_f64();
-                stats.polish = polished.iterations;
-                return Ok((variables, polished.y));
-            }
-            let learned = self.learn(&advance.y, &rounded, h)?;
-            stats.learned += learned;
-            if learned == 0 || lesson == MOST_LESSONS {
-                return Err(IntegerFailure::Blocked { reached });
-            }
+        watch.tick(0.1)?;
+        let clock = Instant::now();
+        let rounding = self.rounding_problem(h)?;
+        let rounded = round_constrained(&rounding)?;
+        let variables = self.integers(&rounded)?;
+        stats.constraints = rounding.constraints.len();
+        stats.restarts += rounded.restarts;
+        stats.seconds_rounding += clock.elapsed().as_secs_f64();
+        if rounded.violated > 0 {
+            return Err(IntegerFailure::Conflict { violated: rounded.violated });
         }
-        Err(IntegerFailure::Blocked { reached: 0.0 })
-    }
-
-    /// Notes the connections that are short where the way is blocked and that the integers would collapse
-    /// or turn around; how many are new.
-    fn learn(&mut self, y: &[f64], rounded: &Rounded, h: f64) -> Result<usize, Overflow> {
-        let z = self.problem.space().expand(y);
-        let held = y[self.problem.n_free()..].chunks(2);
-        let variables: Vec<Complex64> = held.map(|p| Complex64::new(p[0], p[1])).collect();
-        let from = flat(&self.space.coordinates(&variables));
-        let before = self.learned.len();
-        for connection in self.connections(&z, LEARNING_RADIUS * h)? {
-            let constraint = Constraint::new(&connection, &from, h);
-            if !constraint.holds(&rounded.x) {
-                self.learned.push((connection, from.clone()));
-            }
+        watch.tick(0.4)?;
+        let clock = Instant::now();
+        let target = in_layout(&variables, h);
+        let advance = advance(&mut self.problem, self.y.clone(), &target, watch)?;
+        stats.seconds_moving += clock.elapsed().as_secs_f64();
+        stats.moves = advance.moves;
+        if advance.reached < 1.0 {
+            return Err(IntegerFailure::Blocked { reached: advance.reached });
         }
-        Ok(self.learned.len() - before)
+        let clock = Instant::now();
+        let y = advance.y;
+        let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
+        stats.seconds_polish += clock.elapsed().as_secs_f64();
+        stats.polish = polished.iterations;
+        Ok((variables, polished.y))
     }
 
     fn connections(&self, z: &[Complex64], radius: f64) -> Result<Vec<Connection>, Overflow> {
@@ -347,9 +313,8 @@ impl<'a> IntegerProblem<'a> {
         }
         let mean: Vec<f64> = self.zeta.iter().map(|x| x / h).collect();
         let short = self.near.1.iter().filter(|c| c.length < radius);
-        let near = short.map(|c| Constraint::new(c, &self.zeta, h));
-        let learned = self.learned.iter().map(|(c, from)| Constraint::new(c, from, h));
-        let mut constraints: Vec<Constraint> = near.chain(learned).collect();
+        let mut constraints: Vec<Constraint> =
+            short.map(|c| Constraint::new(c, &self.zeta, h)).collect();
         let first = constraints.len();
         constraints.extend(
             self.triangles.as_flattened().iter().map(|c| Constraint::new(c, &self.zeta, h)),
