@@ -68,7 +68,7 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
         return Err(Failure::NoManifold { file: args.map.clone(), faults: faults.clone() });
     }
     if args.smooth > 0 {
-        extraction.mesh = smoothed(args, &mesh, &extraction.mesh)?;
+        extraction.mesh = smoothed(args.smooth, &mesh, &extraction.mesh)?;
     }
     let picture = args.picture.is_some().then(|| {
         let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
@@ -81,14 +81,17 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
 }
 
 /// The quads after smoothing on the mesh they come from.
-fn smoothed(args: &ExtractArgs, mesh: &LoadedMesh, quads: &QuadMesh) -> Result<QuadMesh, Failure> {
-    let options = SmoothOptions { rounds: args.smooth, ..SmoothOptions::default() };
+pub(crate) fn smoothed(
+    rounds: u32,
+    mesh: &LoadedMesh,
+    quads: &QuadMesh,
+) -> Result<QuadMesh, Failure> {
+    let options = SmoothOptions { rounds, ..SmoothOptions::default() };
+    let file = mesh.path.clone();
     match smooth(quads, (&mesh.soup.positions, &mesh.soup.faces), &options) {
         Ok(smoothed) => Ok(smoothed.mesh),
-        Err(SmoothError::NoManifold(faults)) => {
-            Err(Failure::NoManifold { file: args.map.clone(), faults })
-        }
-        Err(error) => Err(Failure::NoQuads { file: args.map.clone(), text: error.to_string() }),
+        Err(SmoothError::NoManifold(faults)) => Err(Failure::NoManifold { file, faults }),
+        Err(error) => Err(Failure::NoQuads { file, text: error.to_string() }),
     }
 }
 
@@ -128,7 +131,7 @@ fn explained_faults(faults: &MapFaults, tolerance: f64) -> String {
 }
 
 /// What the quads lack, on standard error.
-fn tell_losses(extraction: &Extraction) {
+pub(crate) fn tell_losses(extraction: &Extraction) {
     if extraction.trimmed > 0 {
         let cells = counted(extraction.trimmed, "cell");
         text::tell(&format!("note: {cells} cut by the boundary left out"));
@@ -162,7 +165,7 @@ fn finish(args: &ExtractArgs, job: &Job, plan: &Plan, product: &Product) -> Resu
     }
     for target in &plan.targets {
         batch.write(&target.path, |file| match target.kind {
-            Kind::Quads => write_quads(file, &args.map, &target.path, product),
+            Kind::Quads => write_quads(file, &args.map, &target.path, &product.extraction),
             Kind::Picture => file.write_all(product.picture.as_deref().unwrap_or_default()),
             _ => writeln!(file, "{report}"),
         })?;
@@ -177,14 +180,15 @@ fn finish(args: &ExtractArgs, job: &Job, plan: &Plan, product: &Product) -> Resu
     Ok(())
 }
 
-fn write_quads(
+/// The quads, in the format of the output's name.
+pub(crate) fn write_quads(
     file: &mut impl Write,
-    map: &Path,
+    source: &Path,
     output: &Path,
-    product: &Product,
+    extraction: &Extraction,
 ) -> std::io::Result<()> {
-    let name = map.file_name().unwrap_or(map.as_os_str());
-    let quads = &product.extraction.mesh;
+    let name = source.file_name().unwrap_or(source.as_os_str());
+    let quads = &extraction.mesh;
     let comments = [
         format!("Quad mesh by Seamstress {VERSION}"),
         format!("Source: {}", name.display()),
@@ -209,7 +213,7 @@ fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     rows.join("\n")
 }
 
-fn quad_rows(
+pub(crate) fn quad_rows(
     extraction: &Extraction,
     connectivity: &Result<QuadConnectivity, QuadFaults>,
 ) -> Vec<String> {
@@ -299,7 +303,7 @@ fn report_json(args: &ExtractArgs, plan: &Plan, product: &Product, cost: Cost) -
     })
 }
 
-fn quads_json(
+pub(crate) fn quads_json(
     extraction: &Extraction,
     connectivity: &Result<QuadConnectivity, QuadFaults>,
 ) -> Value {

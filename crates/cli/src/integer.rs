@@ -1,6 +1,6 @@
 //! `seamstress integer`.
 
-use crate::args::{GridRounding, IntegerArgs};
+use crate::args::{ConeArgs, GridRounding, IntegerArgs};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
 use crate::map_file::MapFile;
@@ -61,7 +61,7 @@ fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
     let connectivity = mesh.connect()?;
     let map = match &args.map {
         Some(path) => read_map(args, path, &mesh, &connectivity)?,
-        None => make_seamless(args, &mesh, &connectivity, &mut worker)?,
+        None => make_seamless(&args.method, &mesh, &connectivity, &mut worker)?,
     };
     let positions = &mesh.soup.positions;
     let made = to_integer_map(&connectivity, positions, &map, &args.options(), &mut |progress| {
@@ -117,13 +117,14 @@ fn read_map(
     SeamlessMap::certify(connectivity, map.corner_uvs, &args.options().tolerance).map_err(bad)
 }
 
-fn make_seamless(
-    args: &IntegerArgs,
+/// The seamless map to start from, by the direct method.
+pub(crate) fn make_seamless(
+    cones: &ConeArgs,
     mesh: &LoadedMesh,
     connectivity: &TriMesh,
     worker: &mut Worker,
 ) -> Result<SeamlessMap, Failure> {
-    let (positions, options) = (&mesh.soup.positions, args.method.options());
+    let (positions, options) = (&mesh.soup.positions, cones.options());
     let made =
         make_map(connectivity, positions, &options, &mut |progress| worker.observe(progress));
     let solution = made.map_err(|cause| {
@@ -177,14 +178,7 @@ fn report_json(args: &IntegerArgs, plan: &Plan, product: &Product, cost: Cost) -
         },
         "input": report::input_json(&product.mesh),
         "seamless_map": args.map.as_ref().map(|path| path.to_string_lossy()),
-        "grid": {
-            "requested": options.size,
-            "quads": solution.quads(),
-            "edge_length": solution.cell,
-            "scale": 1.0 / solution.cell,
-            "refinements": solution.refinements(),
-            "sizes_tried": solution.sizes_tried,
-        },
+        "grid": grid_json(options.size, solution),
         "components": solution.components,
         "distortion_before": report::distortion_json(&solution.before),
         "integer_certificate": solution.map.certificate(),
@@ -204,7 +198,7 @@ fn write_map(file: &mut impl Write, args: &IntegerArgs, product: &Product) -> st
     let comments = [
         format!("Integer map by Seamstress {VERSION}: one quad per unit square"),
         format!("Source: {}", name.display()),
-        grid_text(args, solution),
+        grid_text(args.size.grid(), solution),
     ];
     let map = MapObj {
         positions: &product.mesh.soup.positions,
@@ -215,9 +209,21 @@ fn write_map(file: &mut impl Write, args: &IntegerArgs, product: &Product) -> st
     write_map_obj(file, &map)
 }
 
+/// The grid asked for and the one made.
+pub(crate) fn grid_json(requested: GridSize, solution: &IntegerSolution) -> Value {
+    json!({
+        "requested": requested,
+        "quads": solution.quads(),
+        "edge_length": solution.cell,
+        "scale": 1.0 / solution.cell,
+        "refinements": solution.refinements(),
+        "sizes_tried": solution.sizes_tried,
+    })
+}
+
 /// What was asked for, and what came out.
-fn grid_text(args: &IntegerArgs, solution: &IntegerSolution) -> String {
-    let asked = match args.options().size {
+pub(crate) fn grid_text(requested: GridSize, solution: &IntegerSolution) -> String {
+    let asked = match requested {
         GridSize::Quads(quads) => format!("{quads} quads"),
         GridSize::EdgeLength(length) => format!("edge length {}", figure(length)),
         GridSize::Scale(scale) => format!("scale {}", figure(scale)),
@@ -233,7 +239,7 @@ fn grid_text(args: &IntegerArgs, solution: &IntegerSolution) -> String {
 fn summary_text(args: &IntegerArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
     let solution = &product.solution;
     let mut rows = summary::mesh_rows(&product.mesh);
-    rows.push(row("grid", &grid_text(args, solution)));
+    rows.push(row("grid", &grid_text(args.size.grid(), solution)));
     rows.extend(summary::map_rows(solution.map.seamless(), &solution.distortion));
     let before = &solution.before;
     rows.push(row(

@@ -19,6 +19,7 @@ mod outcome;
 mod output;
 mod pictures;
 mod progress;
+mod quad;
 mod quad_file;
 mod quality;
 mod repair_matchings;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
     let args = Args::parse();
     let done = match &args.command {
         Command::Map(args) => map::run(args),
+        Command::Quad(args) => quad::run(args),
         Command::Integer(args) => integer::run(args),
         Command::Check(args) => check::run(args),
         Command::Extract(args) => extract::run(args),

@@ -82,6 +82,15 @@ pub(crate) struct SizeArgs {
     scale: Option<f64>,
 }
 
+impl SizeArgs {
+    /// The one that is given; the parser sees to it that there is one.
+    pub(crate) fn grid(&self) -> GridSize {
+        let given = self.quads.map(GridSize::Quads);
+        let given = given.or(self.edge_length.map(GridSize::EdgeLength));
+        given.or(self.scale.map(GridSize::Scale)).unwrap_or(IntegerOptions::default().size)
+    }
+}
+
 /// Names of the ways to round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum GridRounding {
@@ -95,10 +104,7 @@ impl IntegerArgs {
     /// The settings of the method.
     pub(crate) fn options(&self) -> IntegerOptions {
         let mut options = IntegerOptions { tolerance: self.tolerance(), ..Default::default() };
-        let SizeArgs { quads, edge_length, scale } = self.size;
-        let given = quads.map(GridSize::Quads);
-        let given = given.or(edge_length.map(GridSize::EdgeLength));
-        options.size = given.or(scale.map(GridSize::Scale)).unwrap_or(options.size);
+        options.size = self.size.grid();
         options.rounding = match self.rounding {
             GridRounding::Constrained => IntegerRounding::Constrained,
             GridRounding::Greedy => IntegerRounding::Greedy,

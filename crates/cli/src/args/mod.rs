@@ -8,6 +8,7 @@ mod integer;
 mod layout;
 mod map;
 mod measure;
+mod quad;
 mod quads;
 mod repair_matchings;
 mod start;
@@ -21,6 +22,7 @@ pub(crate) use integer::{GridRounding, IntegerArgs};
 pub(crate) use layout::LayoutArgs;
 pub(crate) use map::MapArgs;
 pub(crate) use measure::MeasureArgs;
+pub(crate) use quad::QuadArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
 pub(crate) use repair_matchings::{Norm, RepairMatchingsArgs};
 pub(crate) use start::{Method, StartArgs};
@@ -47,6 +49,7 @@ Examples:
   seamstress map bunny.ply -o bunny.obj
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress quad bunny.ply --quads 5000 -o quads.obj
   seamstress integer bunny.ply --quads 5000 -o grid.obj
   seamstress check bunny.ply
   seamstress check bunny.ply bunny.obj
@@ -81,6 +84,7 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Map(MapArgs),
+    Quad(QuadArgs),
     Integer(IntegerArgs),
     Check(CheckArgs),
     Extract(ExtractArgs),

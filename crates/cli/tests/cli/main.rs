@@ -12,4 +12,5 @@ mod harness;
 mod integer;
 mod layout;
 mod map;
+mod quad;
 mod quads;
