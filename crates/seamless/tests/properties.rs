@@ -60,11 +60,12 @@ fn assert_same(one: &MapSolution, other: &MapSolution, what: &str) {
     assert!((energies[0] - energies[1]).abs() < 1e-6, "{what}: energies {energies:?}");
 }
 
-/// Asserts that two maps are about as good.
+/// Asserts that two maps are about as good. Their cones may differ, and the polish brings each to the least
+/// tau its cones allow, which spreads further than the energy.
 #[track_caller]
 fn assert_alike(one: &MapSolution, other: &MapSolution, what: &str) {
     let (a, b) = (&one.distortion, &other.distortion);
-    assert!(a.tau < 1.5 * b.tau && b.tau < 1.5 * a.tau, "{what}: tau {} and {}", a.tau, b.tau);
+    assert!(a.tau < 1.75 * b.tau && b.tau < 1.75 * a.tau, "{what}: tau {} and {}", a.tau, b.tau);
     let [x, y] = [a, b].map(|d| d.symmetric_dirichlet - 4.0);
     assert!(x < 2.0 * y + 0.01 && y < 2.0 * x + 0.01, "{what}: energies 4 + {x} and 4 + {y}");
 }
