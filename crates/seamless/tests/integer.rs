@@ -1,6 +1,5 @@
 //! Integer maps of small shapes, judged by their certificate and by a check of their own.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
-#![allow(clippy::unwrap_used)]
 use seamstress::{
     GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
     MapOptions, Tolerance, Violation, make_map, to_integer_map,

@@ -1,8 +1,8 @@
 //! Consistent matchings: the nearest matchings, indices and angles that triangles can have.
 //!
 //! Problem (14) of the seed (Levi 2021, supplement, section 9). Matchings carry no cost; they only move
-//! index from vertex to vertex. What is left is a convex quadratic over integer indices ([`descent`]) and,
-//! for fixed indices, a quadratic program in the angles ([`program`]).
+//! index from vertex to vertex. What is left is a convex quadratic over integer indices (`descent`) and,
+//! for fixed indices, a quadratic program in the angles (`program`).
 
 mod bound;
 mod candidates;

@@ -1,7 +1,6 @@
 //! An optional collection of real meshes: the folder `SEAMSTRESS_MESHES`, by default `../shared/meshes` beside
 //! the workspace.
 #![allow(clippy::print_stdout, reason = "tells what was skipped")]
-#![allow(clippy::print_stdout, reason = "says what is skipped")]
 
 use seamstress_surface::soup::{TriangleSoup, triangulate};
 use std::path::{Path, PathBuf};
