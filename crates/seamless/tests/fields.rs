@@ -10,6 +10,7 @@ use seamstress::field::{
     ConePrescription, CrossField, FieldError, Homology, PrescriptionError, directions_in_space,
     extract, frames_from_directions, map_indices, matched_cut, matchings_from_rows, residual_field,
 };
+use seamstress::layout::safeguards::LayoutError;
 use seamstress::{MapError, MapOptions, MapSolution, Start, make_map_from};
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{HalfedgeData, TriMesh};
@@ -328,6 +329,23 @@ fn impossible_cones_are_refused_by_name() {
     let all: Vec<(u32, i32)> = (0..6).map(|v| (v, 1)).collect();
     let sum = ConePrescription::among_others(&sphere, &all).unwrap_err();
     assert_eq!(sum, PrescriptionError::Sum { component: 0, sum: 6, expected: 8 });
+}
+
+#[test]
+fn cones_that_leave_too_much_are_refused_in_the_ids_of_the_whole_mesh() {
+    let soup = kit::disjoint_union(&[kit::cube(), kit::tetrahedron()]);
+    // The fourth vertex of the tetrahedron would have to take 11 quarters.
+    let cones = [(8, -1), (9, -1), (10, -1)];
+    let some = ConePrescription::among_others(&mesh_of(&soup), &cones).unwrap();
+    let error = start(&soup, &Start::Cones(some)).unwrap_err();
+    let MapError::Component { component: 1, face: 12, cause } = error else { panic!("{error}") };
+    assert!(
+        matches!(
+            cause,
+            LayoutError::Cones(PrescriptionError::NoTaker { vertex }) if (8..11).contains(&vertex)
+        ),
+        "{cause}"
+    );
 }
 
 #[test]

@@ -80,13 +80,13 @@ pub enum LayoutError {
     /// Every route left defects; those of the last one.
     #[error("no route gave a layout without defects; the last one left {0}")]
     Defective(Defects),
-    /// The layout stood, but its UVs did not pass the certificate (ids of the component).
+    /// The layout stood, but its UVs did not pass the certificate.
     #[error("the component's map failed its certificate: {0}")]
     Uncertified(Violations),
-    /// The cones prescribed cannot be had beside free ones (ids of the component).
+    /// The cones prescribed cannot be had beside free ones.
     #[error(transparent)]
     Cones(#[from] PrescriptionError),
-    /// No consistent matchings were found for the map to start from (ids of the component).
+    /// No consistent matchings were found for the map to start from.
     #[error(transparent)]
     Inconsistent(ConsistencyError),
     /// A mesh that must be a disk is none.

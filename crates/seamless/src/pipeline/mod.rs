@@ -12,6 +12,7 @@ pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
 pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relayout};
 pub use start::Start;
 
+use crate::consistency::ConsistencyError;
 use crate::features::ReleasedFeature;
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
@@ -281,12 +282,11 @@ fn by_component<S>(
         let mut watch = Watch::new(observer, k, pieces.len());
         let fail = |cause| match cause {
             LayoutError::Cancelled(cancelled) => MapError::Cancelled(cancelled),
-            LayoutError::Defective(defects) => MapError::Component {
+            cause => MapError::Component {
                 component: k,
                 face: piece.faces[0].0,
-                cause: LayoutError::Defective(in_whole(piece, defects)),
+                cause: in_whole(piece, cause),
             },
-            cause => MapError::Component { component: k, face: piece.faces[0].0, cause },
         };
         let (uvs, piece_stats) = lay_out(piece, &mut watch).map_err(fail)?;
         left_edge = place(piece, &uvs, left_edge, &mut corner_uvs);
@@ -311,11 +311,27 @@ fn check_positions(mesh: &TriMesh, positions: &[[f64; 3]]) -> Result<(), MapErro
     }
 }
 
-/// Defects of a component in the ids of the whole mesh.
-fn in_whole(piece: &Component, defects: Defects) -> Defects {
-    Defects {
-        flips: defects.flips.iter().map(|f| piece.faces[f.at()]).collect(),
-        wrong_angles: defects.wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
+/// A failure of a component with the elements it names in the ids of the whole mesh.
+fn in_whole(piece: &Component, cause: LayoutError) -> LayoutError {
+    let whole = |v: u32| piece.vertices[Vertex(v)].0;
+    match cause {
+        LayoutError::Defective(Defects { flips, wrong_angles }) => {
+            LayoutError::Defective(Defects {
+                flips: flips.iter().map(|f| piece.faces[f.at()]).collect(),
+                wrong_angles: wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
+            })
+        }
+        LayoutError::Uncertified(violations) => {
+            LayoutError::Uncertified(violations.in_whole(piece))
+        }
+        LayoutError::Cones(PrescriptionError::NoTaker { vertex }) => {
+            LayoutError::Cones(PrescriptionError::NoTaker { vertex: whole(vertex) })
+        }
+        LayoutError::Inconsistent(ConsistencyError::Infeasible { vertices }) => {
+            let vertices = vertices.into_iter().map(whole).collect();
+            LayoutError::Inconsistent(ConsistencyError::Infeasible { vertices })
+        }
+        cause => cause,
     }
 }
 
