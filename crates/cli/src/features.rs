@@ -3,7 +3,7 @@
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
 use crate::report;
-use seamstress::{Alignment, AlignmentTolerance, MapSolution, ReleasedFeature, Violations};
+use seamstress::{Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations};
 use seamstress_io::{read_pairs, read_sharp};
 use seamstress_surface::features::{
     EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
@@ -182,22 +182,23 @@ pub(crate) struct AlignedFeatures {
 }
 
 impl AlignedFeatures {
-    /// Certifies that every feature is aligned that the solution does not name as released.
+    /// Certifies that every feature is aligned in a map that is not named as released.
     ///
     /// # Errors
     /// What is not aligned.
     pub(crate) fn certify(
         connectivity: &TriMesh,
         asked: Features,
-        solution: &MapSolution,
+        map: &SeamlessMap,
+        released: &[ReleasedFeature],
     ) -> Result<Self, Violations> {
         let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-        let released = solution.released.clone();
+        let released = released.to_vec();
         let gone: BTreeSet<[u32; 2]> = released.iter().map(|f| ordered(f.vertices)).collect();
         let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
         let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
         let tolerance = AlignmentTolerance::default();
-        let alignment = Alignment::certify(connectivity, &solution.map, &kept, &tolerance)?;
+        let alignment = Alignment::certify(connectivity, map, &kept, &tolerance)?;
         Ok(Self { asked, kept, released, alignment })
     }
 

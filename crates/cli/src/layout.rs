@@ -1,6 +1,7 @@
 //! `seamstress layout`.
 
 use crate::args::LayoutArgs;
+use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
 use crate::map_file::MapFile;
@@ -24,6 +25,7 @@ use std::path::Path;
 struct Product {
     mesh: LoadedMesh,
     solution: Relayout,
+    features: Option<AlignedFeatures>,
     pictures: Option<[Vec<u8>; 3]>,
 }
 
@@ -42,6 +44,7 @@ fn plan(args: &LayoutArgs) -> Result<Plan, Failure> {
     let mut inputs: Vec<&Path> = vec![&args.mesh];
     inputs.extend(args.map.as_deref());
     inputs.extend(args.anisotropy.as_deref());
+    inputs.extend(args.features.files());
     let mut targets = Vec::new();
     if let Some(folder) = &args.pictures {
         targets.extend(pictures::NAMES.map(|name| Target::new(Kind::Picture, &folder.join(name))));
@@ -53,6 +56,10 @@ fn plan(args: &LayoutArgs) -> Result<Plan, Failure> {
 
 /// The part of the command that may take long.
 fn make(args: &LayoutArgs, mut worker: Worker) -> Result<Product, Failure> {
+    if args.features.is_given() && args.map.is_none() {
+        let text = "features need a map that follows them, as made by `seamstress map --features`";
+        return Err(Failure::Usage(format!("{}: {text}", args.mesh.display())));
+    }
     let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
     if !args.run.quiet {
         mesh.tell_findings();
@@ -63,6 +70,9 @@ fn make(args: &LayoutArgs, mut worker: Worker) -> Result<Product, Failure> {
     let mut options = args.options();
     options.anisotropy =
         args.anisotropy.as_deref().map(|path| stretches(path, &mesh, &connectivity)).transpose()?;
+    let sources = &args.features.features;
+    let asked = Features::resolve(sources, args.features.align_boundary, &mesh, &connectivity)?;
+    options.features = args.features.is_given().then(|| asked.edges.clone());
     let mut observer = |progress: Progress| worker.observe(progress);
     let positions = &mesh.soup.positions;
     let made = match &start {
@@ -81,13 +91,18 @@ fn make(args: &LayoutArgs, mut worker: Worker) -> Result<Product, Failure> {
         }
     })?;
     worker.stop.lift_limit();
+    let certify =
+        || AlignedFeatures::certify(&connectivity, asked, &solution.map, &solution.released);
+    let features = args.features.is_given().then(certify).transpose();
+    let features =
+        features.map_err(|cause| Failure::Misaligned { file: mesh.path.clone(), cause })?;
     let pictures = args
         .pictures
         .as_ref()
-        .map(|_| pictures::draw(&mesh.soup, &solution.map, None, &args.texture))
+        .map(|_| pictures::draw(&mesh.soup, &solution.map, features.as_ref(), &args.texture))
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, solution, pictures })
+    Ok(Product { mesh, solution, features, pictures })
 }
 
 /// The map to start from, which must be certified.
@@ -156,6 +171,9 @@ fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) ->
             "start": args.map.as_ref().map(|path| path.to_string_lossy()),
             "solver": args.options().settings.conic.solver,
             "anisotropy": args.anisotropy.as_ref().map(|path| path.to_string_lossy()),
+            "features": report::sources_json(&args.features),
+            "align_boundary": args.features.align_boundary,
+            "features_strict": args.features_strict,
             "repair": args.repair,
             "tolerance": args.options().tolerance.seam,
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
@@ -166,6 +184,9 @@ fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) ->
         "files": plan.targets,
         "cost": cost,
     });
+    if let Some(features) = &product.features {
+        value["features"] = features.json();
+    }
     report::merge(&mut value, report::map_json(&solution.map, &solution.distortion));
     report::to_text(&value)
 }
@@ -188,6 +209,7 @@ fn conic_row(stats: ConicStats) -> String {
 fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
     let solution = &product.solution;
     let mut rows = summary::mesh_rows(&product.mesh);
+    rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     for (k, stats) in solution.components.iter().enumerate() {
         let whose = match solution.components.len() {
             1 => String::new(),
@@ -204,6 +226,7 @@ fn summary_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: &Cost) 
         rows.extend(stats.conic.map(conic_row));
     }
     rows.extend(summary::map_rows(&solution.map, &solution.distortion));
+    rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.push(summary::cost_row(cost, std::iter::empty()));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();

@@ -136,7 +136,8 @@ fn solve(
         let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
         let solution =
             make_aligned_map(connectivity, positions, &asked.edges, &options, &mut observe)?;
-        let certify = || AlignedFeatures::certify(connectivity, asked, &solution);
+        let certify =
+            || AlignedFeatures::certify(connectivity, asked, &solution.map, &solution.released);
         let features = args.features.is_given().then(certify).transpose();
         let features =
             features.map_err(|cause| Failure::Misaligned { file: mesh.path.clone(), cause })?;

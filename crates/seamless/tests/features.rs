@@ -5,7 +5,10 @@ mod common;
 
 use common::{mesh_of, surface, unwatched};
 use seamstress::rounding::{MatchedCut, RoundingOptions, repair, round};
-use seamstress::{MapError, MapOptions, MapSolution, ReleaseReason, Sectors, make_aligned_map};
+use seamstress::{
+    MapError, MapOptions, MapSolution, Objective, RelayoutOptions, ReleaseReason, Sectors,
+    make_aligned_map, relayout,
+};
 use seamstress_surface::features::{EdgeFinder, EdgeSet, sharp_edges};
 use seamstress_surface::soup::TriangleSoup;
 use seamstress_surface::{Halfedge, TriMesh, Vertex};
@@ -259,5 +262,63 @@ fn indices_of_sectors_are_integers_with_the_right_sum() {
         for h in mesh.halfedges() {
             assert_eq!(full[h], mesh.twin(h).map_or(0, |t| -full[t]));
         }
+    }
+}
+
+/// A bent box with a map that follows its creases.
+fn mapped_box(options: &MapOptions) -> (TriangleSoup, EdgeSet, MapSolution) {
+    let soup = kit::bumpy(&kit::subdivide(&kit::l_bracket()), 0.04, 5);
+    let features = of_pairs(&soup, &creases(&soup), false);
+    let solution = aligned_with(&soup, &features, options).unwrap();
+    (soup, features, solution)
+}
+
+#[test]
+fn every_objective_keeps_features_on_the_axes() {
+    let (soup, features, solution) = mapped_box(&MapOptions::default());
+    assert!(solution.released.is_empty());
+    let mesh = mesh_of(&soup);
+    for objective in Objective::ALL {
+        let mut options = RelayoutOptions::new(objective);
+        options.features = Some(features.clone());
+        options.strict_features = true;
+        let mut go_on = |_| ControlFlow::Continue(());
+        let laid = relayout(&mesh, &soup.positions, &solution.map, &options, &mut go_on).unwrap();
+        let stats = laid.components[0];
+        assert!(stats.after <= stats.before, "{objective}: {stats:?}");
+        assert_eq!(laid.features, features, "{objective}");
+        let [off_axis, off_quarter] = misalignment(&mesh, laid.map.corner_uvs(), &features);
+        assert!(off_axis < 1e-9 && off_quarter < 1e-6, "{objective}: {off_axis}, {off_quarter}");
+        assert_eq!(laid.map.cones(), solution.map.cones(), "{objective}");
+    }
+}
+
+#[test]
+fn maps_made_for_an_objective_keep_features_on_the_axes() {
+    for objective in Objective::ALL {
+        let options = MapOptions { objective: Some(objective), ..MapOptions::default() };
+        let (soup, features, solution) = mapped_box(&options);
+        assert_eq!(solution.features, features, "{objective}");
+        let mesh = mesh_of(&soup);
+        let [off_axis, off_quarter] = misalignment(&mesh, solution.map.corner_uvs(), &features);
+        assert!(off_axis < 1e-9 && off_quarter < 1e-6, "{objective}: {off_axis}, {off_quarter}");
+    }
+}
+
+#[test]
+fn layouts_name_the_features_that_their_map_does_not_follow() {
+    let (soup, features, _) = mapped_box(&MapOptions::default());
+    let mesh = mesh_of(&soup);
+    let free = aligned_with(&soup, &EdgeSet::new(&mesh, []), &MapOptions::default()).unwrap();
+    let mut options = RelayoutOptions::new(Objective::Arap);
+    options.features = Some(features.clone());
+    let mut go_on = |_| ControlFlow::Continue(());
+    let laid = relayout(&mesh, &soup.positions, &free.map, &options, &mut go_on).unwrap();
+    assert!(laid.released.iter().all(|r| r.reason == ReleaseReason::NotInMap));
+    assert_eq!(laid.released.len() + laid.features.len(), features.len());
+    options.strict_features = true;
+    match relayout(&mesh, &soup.positions, &free.map, &options, &mut go_on) {
+        Err(MapError::Released { released }) => assert_eq!(released, laid.released),
+        other => panic!("expected released features, got {other:?}"),
     }
 }

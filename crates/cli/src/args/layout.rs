@@ -1,6 +1,6 @@
 //! Arguments of `layout`.
 
-use super::{EXIT_CODES, RunArgs, TextureArgs, not_negative, objective, tolerance};
+use super::{EXIT_CODES, FeatureArgs, RunArgs, TextureArgs, not_negative, objective, tolerance};
 use seamstress::{Objective, RelayoutOptions, Solver};
 use std::path::PathBuf;
 
@@ -9,13 +9,15 @@ Examples:
   seamstress layout bunny.ply bunny.obj --objective arap -o rigid.obj
   seamstress layout bunny.ply bunny.obj --objective asap -o conformal.obj --pictures conformal
   seamstress layout mask.obj --objective symmetric-dirichlet -o flat.obj
-  seamstress layout bunny.ply bunny.obj --objective arap --anisotropy stretch.txt -o long.obj";
+  seamstress layout bunny.ply bunny.obj --objective arap --anisotropy stretch.txt -o long.obj
+  seamstress layout part.obj part_map.obj --features angle:40 --objective tau -o even.obj";
 
 /// Lay a map out anew, for the distortion you choose
 ///
 /// Starts from a seamless map and minimises an objective over all maps with its matchings and cones; the
 /// seams may come to lie elsewhere. Without a map, a mesh that is a disk is laid out with a free boundary
-/// and no seam. The result is certified, has no flips, and is never worse than the start.
+/// and no seam. The result is certified, has no flips, and is never worse than the start. Features that the
+/// map follows stay exactly on its axes; those that it does not follow are reported as released.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{LAYOUT_EXAMPLES}\n\n{EXIT_CODES}"))]
 pub(crate) struct LayoutArgs {
@@ -43,6 +45,13 @@ pub(crate) struct LayoutArgs {
     /// space and the stretch wanted along and across it
     #[arg(long, value_name = "FILE")]
     pub(crate) anisotropy: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArgs,
+
+    /// Fail with exit code 3 if the map does not follow a feature, instead of reporting it
+    #[arg(long)]
+    pub(crate) features_strict: bool,
 
     /// Write all figures of the run to this JSON file
     #[arg(long, value_name = "FILE.json")]
@@ -77,10 +86,11 @@ pub(crate) enum SolverName {
 }
 
 impl LayoutArgs {
-    /// The settings without the stretches, which are in a file.
+    /// The settings without the stretches and the features, which files tell.
     pub(crate) fn options(&self) -> RelayoutOptions {
         let mut options = RelayoutOptions::new(self.objective);
         options.tolerance = tolerance(self.tolerance);
+        options.strict_features = self.features_strict;
         options.settings.conic.solver = match self.solver {
             SolverName::Own => Solver::Own,
             SolverName::Clarabel => Solver::Clarabel,

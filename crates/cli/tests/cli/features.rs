@@ -347,3 +347,33 @@ fn the_sharp_file_of_the_collection() {
     let both = features(&folder, &[&mesh, "--features", &sharp, "--features", "angle:40"]);
     assert_eq!((&both["sources"][1]["edges"], &both["edges"]), (&1145.into(), &1175.into()));
 }
+
+#[test]
+fn layouts_keep_features_on_the_axes() {
+    let folder = Folder::new();
+    folder
+        .write_obj("in.obj", &testkit::bumpy(&testkit::subdivide(&testkit::l_bracket()), 0.03, 3));
+    let aligned = ["--features", "angle:40"];
+    folder.expect(0, &[&["map", "in.obj", "-o", "map.obj", "-q"][..], &aligned].concat());
+    for objective in ["arap", "asap", "tau"] {
+        let arguments = ["layout", "in.obj", "map.obj", "--objective", objective, "-o", "new.obj"];
+        let strict = [&arguments[..], &aligned, &["--features-strict", "--json"]].concat();
+        let value: Value = serde_json::from_str(&folder.expect(0, &strict).stdout).unwrap();
+        assert_eq!(value["features"]["kept"], 72);
+        let check = [&["check", "in.obj", "new.obj"][..], &aligned].concat();
+        let run = folder.expect(0, &check);
+        assert!(run.stdout.contains("alignment    passed: 72 edges"), "{}", run.stdout);
+    }
+    // Without being told of them, a layout leaves them.
+    let arguments = ["layout", "in.obj", "map.obj", "--objective", "arap", "-o", "free.obj"];
+    folder.expect(0, &arguments);
+    folder.expect(1, &[&["check", "in.obj", "free.obj"][..], &aligned].concat());
+    // What the map does not follow is named, or refused.
+    let from_free = ["layout", "in.obj", "free.obj", "--objective", "arap", "-o", "new.obj"];
+    let run = folder.expect(0, &[&from_free[..], &aligned].concat());
+    assert!(run.stdout.contains("not along an axis of the map to start from"), "{}", run.stdout);
+    folder.expect(3, &[&from_free[..], &aligned, &["--features-strict"]].concat());
+    let disk = ["layout", "in.obj", "--objective", "arap", "-o", "new.obj"];
+    let run = folder.expect(2, &[&disk[..], &aligned].concat());
+    assert!(run.stderr.contains("features need a map that follows them"), "{}", run.stderr);
+}

@@ -125,7 +125,11 @@ impl DualTree {
 /// the edges of small weight leave the seams to curved vertices.
 pub fn curvature_weight(mesh: &TriMesh, metric: &Metric) -> impl Fn(Halfedge) -> f64 {
     let bend = |(v, k): (Vertex, &f64)| if mesh.is_boundary(v) { 0.0 } else { k.abs() };
-    let bend: VertexData<f64> = metric.curvature(mesh).enumerate().map(bend).collect();
+    flatter_end(mesh, metric.curvature(mesh).enumerate().map(bend).collect())
+}
+
+/// What there is at that end of a half-edge where there is less.
+pub fn flatter_end(mesh: &TriMesh, bend: VertexData<f64>) -> impl Fn(Halfedge) -> f64 {
     move |h| bend[mesh.origin(h)].min(bend[mesh.tip(h)])
 }
 

@@ -5,7 +5,7 @@ mod dual_tree;
 mod steiner;
 
 pub use chains::{Chain, SeamGraph};
-pub use dual_tree::{DualTree, curvature_weight};
+pub use dual_tree::{DualTree, curvature_weight, flatter_end};
 pub use steiner::connect_cones;
 pub(crate) use steiner::{DisjointSets, Ordered};
 

@@ -20,6 +20,8 @@ pub enum ReleaseReason {
     Cap,
     /// The layout had flipped triangles or wrong angles near it.
     NoLayout,
+    /// The map to lay out anew does not follow it.
+    NotInMap,
 }
 
 impl std::fmt::Display for ReleaseReason {
@@ -29,6 +31,7 @@ impl std::fmt::Display for ReleaseReason {
             Self::Needle => "needle between two feature edges",
             Self::Cap => "too few triangles between two feature edges",
             Self::NoLayout => "no layout near it",
+            Self::NotInMap => "not along an axis of the map to start from",
         })
     }
 }

@@ -166,6 +166,14 @@ impl<'m> Sectors<'m> {
         self.preferred[sector]
     }
 
+    /// How far each sector is from flat, radians: an ordinary vertex from a full turn, one at a feature from
+    /// a half; zero where it is free.
+    #[must_use]
+    pub fn bend(&self, metric: &Metric) -> VertexData<f64> {
+        let bend = |(s, k): (Vertex, &f64)| if self.is_free(s) { 0.0 } else { k.abs() };
+        metric.curvature(self.slit()).enumerate().map(bend).collect()
+    }
+
     /// Smallest and largest index of a sector that triangles can make; see [`index_bounds`].
     #[must_use]
     pub fn bounds(&self, sector: Vertex) -> (i32, i32) {

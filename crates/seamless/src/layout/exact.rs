@@ -95,9 +95,7 @@ impl ExactLayout {
     }
 
     /// The exact layouts with the matchings (modulo 4) and cones of a map of a connected mesh, and the
-    /// unknowns of the one nearest to it in the Jacobians.
-    ///
-    /// The map's UVs are in mesh units. Its own gauge is that of the all-seam cut here.
+    /// unknowns of the one nearest to it in the Jacobians; see [`Self::from_aligned_map`].
     ///
     /// # Errors
     /// When a system cannot be set up or factored.
@@ -106,6 +104,26 @@ impl ExactLayout {
         metric: &Metric,
         map: &SeamlessMap,
     ) -> Result<(Self, Vec<f64>), NotPositiveDefinite> {
+        Self::from_aligned_map(&Sectors::unaligned(mesh), metric, map)
+    }
+
+    /// The same where edges are aligned: they keep their axes and senses, and sectors their angles.
+    ///
+    /// The map's UVs are in mesh units, and the aligned edges run along the axes in it. Its own gauge is
+    /// that of the all-seam cut here.
+    ///
+    /// # Errors
+    /// When a system cannot be set up or factored.
+    pub fn from_aligned_map(
+        sectors: &Sectors<'_>,
+        metric: &Metric,
+        map: &SeamlessMap,
+    ) -> Result<(Self, Vec<f64>), NotPositiveDefinite> {
+        let (mesh, slit) = (sectors.mesh(), sectors.slit());
+        let corner = |h: Halfedge| {
+            let [u, v] = map.corner_uvs()[h.at()];
+            Complex64::new(u, v) / metric.unit
+        };
         let mut full = HalfedgeData::filled(mesh.n_halfedges(), 0);
         for seam in map.seams() {
             full[seam.left] = seam.matching;
@@ -113,15 +131,20 @@ impl ExactLayout {
                 full[t] = -seam.matching;
             }
         }
-        let mut index = VertexData::filled(mesh.n_vertices(), 0);
-        for cone in map.cones() {
-            index[Vertex(cone.vertex)] = cone.index;
+        for h in sectors.aligned() {
+            let direction = (corner(h.next()) - corner(h)).arg() / FRAC_PI_2;
+            full[h] = -direction.round() as i32;
         }
-        let mut layout = Self::over(&Sectors::unaligned(mesh), metric, &full, index)?;
-        let corner = |h: Halfedge| {
-            let [u, v] = map.corner_uvs()[h.at()];
-            Complex64::new(u, v) / metric.unit
-        };
+        let mut angle = VertexData::filled(slit.n_vertices(), 0.0);
+        for h in mesh.halfedges() {
+            let [right, left] = [h.next(), h.prev()].map(|other| corner(other) - corner(h));
+            angle[slit.origin(h)] += (right.conj() * left).arg() / FRAC_PI_2;
+        }
+        // The index for an angle is what the angle is for an index.
+        let index =
+            |s| if sectors.is_free(s) { 0 } else { sectors.quarters(s, angle[s]).round() as i32 };
+        let index = slit.vertices().map(index).collect();
+        let mut layout = Self::over(sectors, metric, &full, index)?;
         let targets = layout.jacobians(mesh, corner);
         let y = Poisson::new(&mut layout.problem)?.follow(&targets);
         Ok((layout, y))

@@ -7,7 +7,7 @@ use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use super::objective::OptimizeError;
 use crate::consistency::ConsistencyError;
-use crate::cut::{DualTree, curvature_weight};
+use crate::cut::{DualTree, flatter_end};
 use crate::features::Sectors;
 use crate::field::{PrescriptionError, SmoothError};
 use crate::map::Violations;
@@ -171,7 +171,7 @@ pub fn lay_out(
 pub enum Effort {
     /// Every route.
     Thorough,
-    /// Nothing beyond the barrier homotopy: for matchings that may as well be given up.
+    /// No homotopies: for matchings that may as well be given up.
     Brief,
 }
 
@@ -208,14 +208,17 @@ pub fn lay_out_with(
                 return Ok(Laid { matched, layout, y, route: Route::Untangled, homotopy_steps });
             }
         }
+        if effort == Effort::Brief {
+            return Err(LayoutError::Defective(defects));
+        }
     }
-    let mut tried = Homotopies { effort, steps: 0, last: Defects::default() };
+    let mut tried = Homotopies { steps: 0, last: Defects::default() };
     let plain = tried.run(sectors, metric, matched, watch)?;
     let matched = match plain {
         Attempt::Laid(laid) => return Ok(*laid),
         Attempt::Failed(matched) => *matched,
     };
-    if sectors.any_aligned() || effort == Effort::Brief {
+    if sectors.any_aligned() {
         // With aligned edges, releasing one is the better way out.
         return Err(LayoutError::Defective(tried.last));
     }
@@ -275,7 +278,6 @@ fn untangle(
 
 /// What the homotopies have cost and left so far.
 struct Homotopies {
-    effort: Effort,
     steps: usize,
     last: Defects,
 }
@@ -301,9 +303,6 @@ impl Homotopies {
             Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
-        if self.effort == Effort::Brief {
-            return Ok(Attempt::Failed(Box::new(matched)));
-        }
         let closed = homotopy::continuation(sectors, metric, &matched, &settings, watch)?;
         let matched = match self.accept(sectors, metric, matched, closed, Route::Continuation)? {
             Attempt::Failed(matched) => *matched,
@@ -369,7 +368,7 @@ pub fn way_back(
 /// rotations, lifted so that the differences stay what they are.
 pub fn retree(sectors: &Sectors<'_>, metric: &Metric, matched: &MatchedCut) -> MatchedCut {
     let slit = sectors.slit();
-    let curvature = curvature_weight(slit, metric);
+    let curvature = flatter_end(slit, sectors.bend(metric));
     let mut transport = HalfedgeData::filled(slit.n_halfedges(), 0.0);
     let mut isometric = HalfedgeData::filled(slit.n_halfedges(), 0.0);
     for ((&h, &r), &r0) in matched.turning.iter().zip(&matched.matching).zip(&matched.isometric) {

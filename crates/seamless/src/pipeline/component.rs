@@ -3,11 +3,13 @@
 use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::mended::lay_out_or_mend;
+use super::parts::in_component;
 use super::start::Start;
 use super::{ComponentStats, MapOptions, StageStats};
 use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
 use crate::layout::exact::ExactLayout;
 use crate::layout::objective::{ObjectiveOptions, optimize};
+use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, lay_out, way_back};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
@@ -70,15 +72,6 @@ pub(super) fn map_component(
     Ok(ComponentMap { uvs, features, released, stats })
 }
 
-/// The edges of a set in a component, in its own ids.
-fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
-    let local = |h: &Halfedge| {
-        let whole = piece.faces[h.face().at()].halfedge(h.side());
-        edges.contains(whole)
-    };
-    EdgeSet::new(&piece.mesh, piece.mesh.halfedges().filter(local))
-}
-
 /// Maps one component with nothing aligned, in whichever metric it takes.
 fn map_unaligned(
     mesh: &TriMesh,
@@ -127,7 +120,7 @@ fn solve(
     } else {
         (lay_out(sectors, &metric, begun.matched, Some(&begun.frames), watch)?, 0)
     };
-    let mut finished = Finished::new(laid, watch)?;
+    let mut finished = Finished::judged(sectors, laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
     if options.cone_price > 0.0 && start.leaves_cones_free() {
@@ -138,9 +131,19 @@ fn solve(
         clock.lap(Stage::CleanUp, iterations);
     }
 
-    if let Some(polish) = &options.polish {
+    let aligned = sectors.any_aligned();
+    if aligned || options.polish.is_some() {
         watch.enter(Stage::Polish)?;
-        let iterations = finished.polish(polish, watch)?;
+    }
+    if aligned {
+        let before = finished.iterations;
+        finished.sharpen(watch)?;
+        clock.lap(Stage::Polish, finished.iterations - before);
+    }
+    // Where edges are aligned, sharpening is mostly all that can be done: few triangles hold tau up.
+    let spent = |polish: &PolishOptions| aligned && finished.has_risen_beyond(polish);
+    if let Some(polish) = options.polish.filter(|polish| !spent(polish)) {
+        let iterations = finished.polish(&polish, watch)?;
         clock.lap(Stage::Polish, iterations);
     }
 

@@ -45,7 +45,7 @@ pub(super) fn fewer_cones(
         let frames: Vec<_> =
             frames.into_iter().zip(gauge.iter()).map(|(r, &k)| turn(r, k)).collect();
         let after = match lay_out_with(sectors, metric, cleaned, Some(&frames), effort, watch) {
-            Ok(laid) => Finished::new(laid, watch)?,
+            Ok(laid) => Finished::judged(sectors, laid, watch)?,
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(_) => continue,
         };

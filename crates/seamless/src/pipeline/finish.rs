@@ -1,5 +1,6 @@
 //! From a flip-free layout to one of low distortion.
 
+use crate::features::Sectors;
 use crate::layout::energy::{Energy, PowerOfDirichlet, SymmetricDirichlet};
 use crate::layout::newton::NewtonOptions;
 use crate::layout::polish::{PolishOptions, polish};
@@ -23,15 +24,34 @@ pub(super) struct Finished {
 }
 
 impl Finished {
-    /// Minimises the symmetric Dirichlet energy, then growing powers of it; keeps the best
-    /// compromise on the way. Cheap enough to judge clean-up by; [`Finished::polish`] does better.
-    pub(super) fn new(mut laid: Laid, watch: &mut Watch<'_, '_>) -> Result<Self, Cancelled> {
+    /// Minimises the symmetric Dirichlet energy.
+    pub(super) fn relaxed(mut laid: Laid, watch: &mut Watch<'_, '_>) -> Result<Self, Cancelled> {
         let solution = laid.layout.minimize(laid.y, &SymmetricDirichlet, &SETTLE, watch)?;
-        let mut iterations = laid.homotopy_steps + solution.iterations;
-        let mut y = solution.y;
-        let (mut symmetric_dirichlet, mut tau) = laid.layout.distortion(&y);
-        laid.y = y.clone();
-        let relaxed = y.clone();
+        let iterations = laid.homotopy_steps + solution.iterations;
+        let (symmetric_dirichlet, tau) = laid.layout.distortion(&solution.y);
+        laid.y = solution.y.clone();
+        Ok(Self { laid, relaxed: solution.y, symmetric_dirichlet, tau, iterations })
+    }
+
+    /// What clean-up is judged by: the relaxed layout, sharpened too unless edges are aligned. Then each
+    /// iteration costs more, and sharpening waits until the cones are final.
+    pub(super) fn judged(
+        sectors: &Sectors<'_>,
+        laid: Laid,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Self, Cancelled> {
+        let mut finished = Self::relaxed(laid, watch)?;
+        if !sectors.any_aligned() {
+            finished.sharpen(watch)?;
+        }
+        Ok(finished)
+    }
+
+    /// Minimises growing powers of the energy from the relaxed layout; keeps the best compromise on the
+    /// way. [`Finished::polish`] does better.
+    pub(super) fn sharpen(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
+        let Self { laid, symmetric_dirichlet, tau, iterations, .. } = self;
+        let mut y = self.relaxed.clone();
         for p in POWERS {
             let z = laid.layout.expand(&y);
             let worst = laid.layout.problem().triangles().iter().map(|t| {
@@ -40,15 +60,22 @@ impl Finished {
             });
             let energy = PowerOfDirichlet { p, bound: worst.fold(4.0, f64::max) };
             let solution = laid.layout.minimize(y, &energy, &POLISH, watch)?;
-            iterations += solution.iterations;
+            *iterations += solution.iterations;
             y = solution.y;
             let (energy, worst) = laid.layout.distortion(&y);
-            if regret(energy, worst) < regret(symmetric_dirichlet, tau) {
-                (symmetric_dirichlet, tau) = (energy, worst);
+            if regret(energy, worst) < regret(*symmetric_dirichlet, *tau) {
+                (*symmetric_dirichlet, *tau) = (energy, worst);
                 laid.y = y.clone();
             }
         }
-        Ok(Self { laid, relaxed, symmetric_dirichlet, tau, iterations })
+        Ok(())
+    }
+
+    /// Whether sharpening has raised the energy by more than the polish may. It hardly ever finds
+    /// anything then.
+    pub(super) fn has_risen_beyond(&self, options: &PolishOptions) -> bool {
+        let (least, _) = self.laid.layout.distortion(&self.relaxed);
+        self.symmetric_dirichlet > (1.0 + options.max_energy_rise) * least
     }
 
     /// Lowers tau; returns the iterations taken.

@@ -5,6 +5,7 @@ mod component;
 mod fewer_cones;
 mod finish;
 mod mended;
+mod parts;
 mod relayout;
 mod start;
 
@@ -24,8 +25,9 @@ use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
+use parts::Outcome;
 use seamstress_surface::features::EdgeSet;
-use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, Vertex, components};
+use seamstress_surface::{Component, Face, Metric, TriMesh, Vertex, components};
 
 /// Settings of the direct method.
 #[derive(Debug, Clone, Copy)]
@@ -240,27 +242,23 @@ fn run(
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    let (mut kept, mut released) = (Vec::new(), Vec::new());
+    let mut outcome = Outcome::default();
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
         let mapped =
             map_component(piece, positions, &start.restrict(piece), features, options, watch)?;
-        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
-        kept.extend(mapped.features.edges().iter().map(whole));
-        released.extend(mapped.released.into_iter().map(|mut feature| {
-            feature.vertices = feature.vertices.map(|v| piece.vertices[Vertex(v)].0);
-            feature
-        }));
+        outcome.add(piece, &mapped.features, &mapped.released);
         Ok((mapped.uvs, mapped.stats))
     })?;
-    if options.strict_features && !released.is_empty() {
-        return Err(MapError::Released { released });
+    if options.strict_features && !outcome.released.is_empty() {
+        return Err(MapError::Released { released: outcome.released });
     }
     let metric = Metric::from_positions(mesh, positions);
     let distortion = distortion(mesh, &metric, &corner_uvs);
     let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    let features = EdgeSet::new(mesh, kept);
+    let features = outcome.kept(mesh);
     let tolerance = AlignmentTolerance::default();
     let alignment = Alignment::certify(mesh, &map, &features.vertex_pairs(mesh), &tolerance)?;
+    let released = outcome.released;
     Ok(MapSolution { map, distortion, features, alignment, released, components })
 }
 

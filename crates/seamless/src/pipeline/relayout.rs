@@ -1,8 +1,9 @@
 //! Laying a given map out anew, for another objective.
 
 use super::component::corner_uvs;
+use super::parts::{Outcome, followed, in_component};
 use super::{MapError, by_component};
-use crate::features::Sectors;
+use crate::features::{ReleasedFeature, Sectors};
 use crate::layout::anisotropy::Anisotropy;
 use crate::layout::disk::{embed_disk, is_disk};
 use crate::layout::energy::SymmetricDirichlet;
@@ -12,9 +13,10 @@ use crate::layout::objective::{
     ConicStats, Ending, Objective, ObjectiveOptions, Optimized, optimize,
 };
 use crate::layout::safeguards::LayoutError;
-use crate::map::{SeamlessMap, Tolerance};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
 use crate::progress::{Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
+use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Component, Metric, TriMesh};
 
 /// Settings of [`relayout`] and [`lay_out_disk`].
@@ -26,6 +28,11 @@ pub struct RelayoutOptions {
     pub settings: ObjectiveOptions,
     /// Stretches that count as no distortion; none by default.
     pub anisotropy: Option<Anisotropy>,
+    /// Edges that run along the axes of the map and have to stay there; none by default. Those that do not
+    /// run there are released.
+    pub features: Option<EdgeSet>,
+    /// Whether a released feature is an error ([`MapError::Released`]) rather than a line in the result.
+    pub strict_features: bool,
     /// Tolerance of the certificate, for the map given and the one returned.
     pub tolerance: Tolerance,
 }
@@ -37,6 +44,8 @@ impl RelayoutOptions {
             objective,
             settings: ObjectiveOptions::default(),
             anisotropy: None,
+            features: None,
+            strict_features: false,
             tolerance: Tolerance::default(),
         }
     }
@@ -50,6 +59,12 @@ pub struct Relayout {
     pub map: SeamlessMap,
     /// Its distortion.
     pub distortion: Distortion,
+    /// The edges that run along the axes: the features asked for, except those released.
+    pub features: EdgeSet,
+    /// The certificate of their alignment.
+    pub alignment: Alignment,
+    /// Features that did not run along an axis of the map given.
+    pub released: Vec<ReleasedFeature>,
     /// One entry per connected component, in order of first faces.
     pub components: Vec<RelayoutStats>,
 }
@@ -73,7 +88,7 @@ pub struct RelayoutStats {
 }
 
 /// Lays a seamless map out anew for an objective, with its matchings and cones. Its seams may come to lie
-/// elsewhere.
+/// elsewhere; features keep their axes, and their corners their angles.
 ///
 /// # Errors
 /// [`MapError`]; never an uncertified map.
@@ -92,7 +107,8 @@ pub fn relayout(
     })
 }
 
-/// Lays out disks with a free boundary, without seams or cones.
+/// Lays out disks with a free boundary, without seams or cones. Features can hardly be had this way: they
+/// need a map that follows them.
 ///
 /// # Errors
 /// [`MapError`], also when a component is not a disk; never an uncertified map.
@@ -133,16 +149,29 @@ fn run(
     observer: &mut Observer<'_>,
     start: impl Fn(&Component, &Metric, &mut Watch<'_, '_>) -> Result<SeamlessMap, LayoutError>,
 ) -> Result<Relayout, MapError> {
+    let none = EdgeSet::new(mesh, []);
+    let asked = options.features.as_ref().unwrap_or(&none);
+    let mut outcome = Outcome::default();
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
         let here: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
-        improve(piece, &metric, &map, options, watch)
+        let (kept, released) = followed(&piece.mesh, &map, in_component(asked, piece))
+            .map_err(LayoutError::Uncertified)?;
+        outcome.add(piece, &kept, &released);
+        improve(piece, &metric, &map, &kept, options, watch)
     })?;
+    if options.strict_features && !outcome.released.is_empty() {
+        return Err(MapError::Released { released: outcome.released });
+    }
     let metric = Metric::from_positions(mesh, positions);
     let distortion = distortion(mesh, &metric, &corner_uvs);
     let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    Ok(Relayout { map, distortion, components })
+    let features = outcome.kept(mesh);
+    let tolerance = AlignmentTolerance::default();
+    let alignment = Alignment::certify(mesh, &map, &features.vertex_pairs(mesh), &tolerance)?;
+    let released = outcome.released;
+    Ok(Relayout { map, distortion, features, alignment, released, components })
 }
 
 /// Minimises the objective from a map; gives the map back if nothing certified comes out of it.
@@ -150,12 +179,13 @@ fn improve(
     piece: &Component,
     metric: &Metric,
     map: &SeamlessMap,
+    features: &EdgeSet,
     options: &RelayoutOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, RelayoutStats), LayoutError> {
     let mesh = &piece.mesh;
-    let sectors = Sectors::unaligned(mesh);
-    let (mut layout, y) = ExactLayout::from_map(mesh, metric, map)?;
+    let sectors = Sectors::new(mesh, metric, features);
+    let (mut layout, y) = ExactLayout::from_aligned_map(&sectors, metric, map)?;
     if let Some(anisotropy) = &options.anisotropy {
         layout.problem_mut().stretch(&anisotropy.of_faces(&piece.faces));
     }
@@ -176,8 +206,12 @@ fn improve(
         conic,
     };
     let uvs = corner_uvs(mesh, metric, &layout, &y);
-    match SeamlessMap::certify(mesh, uvs, &options.tolerance) {
-        Ok(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
-        Err(_) => Ok((map.corner_uvs().to_vec(), stats(before, Ending::NoGain))),
+    let pairs = features.vertex_pairs(mesh);
+    let is_aligned = |map: &SeamlessMap| {
+        Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default()).is_ok()
+    };
+    match SeamlessMap::certify(mesh, uvs, &options.tolerance).ok().filter(is_aligned) {
+        Some(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
+        None => Ok((map.corner_uvs().to_vec(), stats(before, Ending::NoGain))),
     }
 }

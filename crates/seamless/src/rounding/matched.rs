@@ -1,6 +1,6 @@
 //! A cut with a matching on every seam.
 
-use crate::cut::{Cut, DualTree, curvature_weight};
+use crate::cut::{Cut, DualTree, flatter_end};
 use crate::features::Sectors;
 use crate::layout::isometric;
 use crate::layout::space::regauge;
@@ -43,7 +43,7 @@ impl MatchedCut {
     /// ground, by the longest first.
     pub fn through_curved_sectors(sectors: &Sectors<'_>, metric: &Metric) -> Self {
         let grounding = sectors.aligned().map(|h| (-metric.length[h], h));
-        let weight = curvature_weight(sectors.slit(), metric);
+        let weight = flatter_end(sectors.slit(), sectors.bend(metric));
         Self::new(sectors, metric, DualTree::grounded(sectors.slit(), grounding, weight))
     }
 

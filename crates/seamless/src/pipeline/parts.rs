@@ -1,0 +1,67 @@
+//! Features of the mesh and of its components.
+
+use crate::features::{ReleaseReason, ReleasedFeature};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violation, Violations};
+use seamstress_surface::features::EdgeSet;
+use seamstress_surface::{Component, Halfedge, TriMesh, Vertex};
+use std::collections::BTreeSet;
+
+/// The edges of a set in a component, in its own ids.
+pub(super) fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
+    let local = |h: &Halfedge| {
+        let whole = piece.faces[h.face().at()].halfedge(h.side());
+        edges.contains(whole)
+    };
+    EdgeSet::new(&piece.mesh, piece.mesh.halfedges().filter(local))
+}
+
+/// What became of the features of all components, in the ids of the whole mesh.
+#[derive(Debug, Default)]
+pub(super) struct Outcome {
+    kept: Vec<Halfedge>,
+    pub(super) released: Vec<ReleasedFeature>,
+}
+
+impl Outcome {
+    /// Adds those of a component, given in its own ids.
+    pub(super) fn add(&mut self, piece: &Component, kept: &EdgeSet, released: &[ReleasedFeature]) {
+        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
+        self.kept.extend(kept.edges().iter().map(whole));
+        self.released.extend(released.iter().map(|feature| ReleasedFeature {
+            vertices: feature.vertices.map(|v| piece.vertices[Vertex(v)].0),
+            ..*feature
+        }));
+    }
+
+    /// The edges that are aligned.
+    pub(super) fn kept(&self, mesh: &TriMesh) -> EdgeSet {
+        EdgeSet::new(mesh, self.kept.iter().copied())
+    }
+}
+
+/// The features that run along the axes of a map, and the others.
+///
+/// # Errors
+/// Sectors of the former whose angle is no positive number of quarter turns.
+pub(super) fn followed(
+    mesh: &TriMesh,
+    map: &SeamlessMap,
+    features: EdgeSet,
+) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
+    let tolerance = AlignmentTolerance::default();
+    let Err(Violations(found)) =
+        Alignment::certify(mesh, map, &features.vertex_pairs(mesh), &tolerance)
+    else {
+        return Ok((features, Vec::new()));
+    };
+    let off_axis = |violation: &Violation| match *violation {
+        Violation::OffAxis { vertices, .. } => Some(vertices),
+        _ => None,
+    };
+    let off: BTreeSet<[u32; 2]> = found.iter().filter_map(off_axis).collect();
+    let edge = |&[a, b]: &[u32; 2]| mesh.edge_between(Vertex(a), Vertex(b));
+    let kept = features.without(mesh, off.iter().filter_map(edge));
+    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), &tolerance)?;
+    let reason = ReleaseReason::NotInMap;
+    Ok((kept, off.into_iter().map(|vertices| ReleasedFeature { vertices, reason }).collect()))
+}
