@@ -2,19 +2,21 @@
 
 use crate::args::FieldArgs;
 use crate::input::LoadedMesh;
-use crate::map_file::MapFile;
 use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
+use crate::quad_file::read_quads;
 use crate::report::{self, VERSION};
+use crate::start::read_corner_uvs;
 use crate::summary;
 use crate::text::{self, counted, row};
 use seamstress::field::{CrossField, Homology, directions_in_space, extract};
-use seamstress::map::compare_source;
-use seamstress::{SeamlessMap, Tolerance, Violations};
+use seamstress::{SeamlessMap, Tolerance};
 use seamstress_io::{MatchingRow, write_matching, write_rawfield, write_rosy, write_singularities};
+use seamstress_quads::layout::lay_out_squares;
 use seamstress_surface::{Halfedge, Metric, TriMesh};
 use serde_json::json;
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 /// A field, and nothing written yet.
 struct Product {
@@ -31,7 +33,8 @@ pub(crate) fn run(args: &FieldArgs) -> Result<Status, Failure> {
         args.sing.iter().map(|path| Target::new(Kind::Cones, path)).collect();
     targets.extend(args.matching.iter().map(|path| Target::new(Kind::Matching, path)));
     targets.push(Target::new(Kind::Field, &args.output));
-    let plan = Plan::new(&[&args.mesh, &args.map], None, targets)?;
+    let inputs: Vec<&Path> = args.map.iter().chain([&args.mesh]).map(PathBuf::as_path).collect();
+    let plan = Plan::new(&inputs, None, targets)?;
     let product = read_off(args)?;
     let mut batch = plan.begin()?;
     for target in &plan.targets {
@@ -50,17 +53,13 @@ fn read_off(args: &FieldArgs) -> Result<Product, Failure> {
     let mesh = LoadedMesh::load(&args.mesh, args.repair)?;
     mesh.tell_findings();
     let connectivity = mesh.connect()?;
-    let bad_map = |text: String| Failure::BadMap { file: args.map.clone(), text };
-    let read = MapFile::read(&args.map)?;
-    let violations = compare_source(
-        (&mesh.soup.positions, &mesh.soup.faces),
-        (&read.soup.positions, &read.soup.faces),
-    );
-    if !violations.is_empty() {
-        return Err(bad_map(Violations(violations).to_string()));
-    }
+    let (file, corner_uvs) = match &args.map {
+        Some(map) => (map, read_corner_uvs(map, &connectivity, &mesh.soup.positions)?),
+        None => (&args.mesh, uvs_of_quads(&args.mesh, &mesh.soup.faces)?),
+    };
+    let bad_map = |text: String| Failure::BadMap { file: file.clone(), text };
     let tolerance = Tolerance { seam: args.tolerance, ..Tolerance::default() };
-    let map = SeamlessMap::certify(&connectivity, read.corner_uvs, &tolerance)
+    let map = SeamlessMap::certify(&connectivity, corner_uvs, &tolerance)
         .map_err(|violations| bad_map(format!("not a seamless map: {violations}")))?;
     let metric = Metric::from_positions(&connectivity, &mesh.soup.positions);
     let homology = Homology::new(&connectivity);
@@ -70,6 +69,20 @@ fn read_off(args: &FieldArgs) -> Result<Product, Failure> {
     let cones = indices.enumerate().filter(|(_, k)| **k != 0).map(|(v, &k)| (v.0, k)).collect();
     let loops = homology.loops().iter().map(|l| field.loop_index(&connectivity, l)).collect();
     Ok(Product { mesh, connectivity, field, cones, loops })
+}
+
+/// UVs of the triangles of a quad mesh, two for each quad along either diagonal, from the layout in which
+/// every quad is a unit square.
+fn uvs_of_quads(path: &Path, faces: &[[u32; 3]]) -> Result<Vec<[f64; 2]>, Failure> {
+    let quads = read_quads(path)?;
+    let bad = |text: String| Failure::BadMesh { file: path.to_owned(), text };
+    let layout = lay_out_squares(&quads).map_err(|error| bad(error.to_string()))?;
+    let halves = layout.faces.as_flattened().chunks_exact(6).zip(layout.corner_uvs.chunks_exact(6));
+    let uvs =
+        halves.zip(faces.as_flattened().chunks_exact(6)).flat_map(|((vertices, uvs), here)| {
+            here.iter().filter_map(|v| Some(uvs[vertices.iter().position(|w| w == v)?]))
+        });
+    Ok(uvs.collect())
 }
 
 fn write_field(file: &mut impl Write, args: &FieldArgs, product: &Product) -> io::Result<()> {

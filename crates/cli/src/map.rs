@@ -1,6 +1,6 @@
 //! `seamstress map`.
 
-use crate::args::{FeatureArgs, MapArgs, Method, StartArgs};
+use crate::args::{FeatureArgs, MapArgs, Method, Rounding, StartArgs};
 use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
@@ -47,6 +47,11 @@ pub(crate) fn run(args: &MapArgs) -> Result<Status, Failure> {
 fn plan(args: &MapArgs) -> Result<Plan, Failure> {
     if args.start.method == Method::Field && args.features.is_given() {
         let text = "features are aligned by the direct method; leave out `--method field`";
+        return Err(Failure::Usage(text.into()));
+    }
+    if args.rounding == Rounding::MixedInteger && args.features.is_given() {
+        let text = "features are aligned by the other ways of rounding; leave out `--rounding \
+                    mixed-integer`";
         return Err(Failure::Usage(text.into()));
     }
     let mut targets = Vec::new();
@@ -195,6 +200,9 @@ fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> St
             "features_strict": args.features_strict,
             "corner_weight": args.corner_weight,
             "rounding": args.options().rounding.strategy,
+            "batch": args.batch,
+            "nodes": args.nodes,
+            "rounding_time": args.rounding_time.map(|limit| limit.as_secs_f64()),
             "start": start_json(&args.start),
             "tau_polish": !args.no_tau_polish,
             "polish_time": args.polish_time.map(|limit| limit.as_secs_f64()),
@@ -230,6 +238,7 @@ fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
     rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     rows.extend(product.made.rows());
+    rows.extend(summary::mixed_integer_rows(&product.made.components));
     rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.push(summary::cost_row(cost, summary::stages(&product.made.components)));
     let names: Vec<String> =

@@ -4,6 +4,7 @@ use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::report::{Cost, cones_by_index, tau};
 use crate::text::{counted, figure, row};
+use seamstress::mixed_integer::MixedIntegerStats;
 use seamstress::quality::Distortion;
 use seamstress::{Alignment, ComponentStats, SeamlessMap};
 use seamstress_surface::features::NodeKind;
@@ -110,6 +111,33 @@ pub(crate) fn aligned_rows(features: &AlignedFeatures) -> Vec<String> {
         rows.push(row("", &format!("and {more} more; the report has them all")));
     }
     rows
+}
+
+/// How mixed-integer rounding went, if there was any.
+pub(crate) fn mixed_integer_rows(components: &[ComponentStats]) -> Vec<String> {
+    let stats: Vec<&MixedIntegerStats> =
+        components.iter().filter_map(|c| c.mixed_integer.as_ref()).collect();
+    let batches: Vec<_> = stats.iter().flat_map(|stats| &stats.batches).collect();
+    if batches.is_empty() {
+        return Vec::new();
+    }
+    let integers: usize = batches.iter().map(|batch| batch.integers).sum();
+    let proven = batches.iter().filter(|batch| batch.proven).count();
+    let mut text = format!(
+        "{} in {}, {proven} of them proven, {} solved",
+        counted(integers, "variable"),
+        counted(batches.len(), "group"),
+        counted(stats.iter().map(|stats| stats.nodes()).sum(), "program"),
+    );
+    let worst = batches.iter().filter_map(|batch| Some((batch.tau?, batch.bound)));
+    if let Some((tau, bound)) = worst.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        text += &format!("; worst tau {tau:.4}, its bound {bound:.4}");
+    }
+    let left: usize = stats.iter().map(|stats| stats.left_to_nearest).sum();
+    if left > 0 {
+        text += &format!("; {} rounded to the nearest", counted(left, "matching"));
+    }
+    vec![row("integers", &text)]
 }
 
 /// Distortion, cones, seams and certificate of a map.

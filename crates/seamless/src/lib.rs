@@ -13,6 +13,7 @@ pub mod field;
 pub mod integer;
 pub mod layout;
 pub mod map;
+pub mod mixed_integer;
 mod pipeline;
 pub mod progress;
 pub mod quality;

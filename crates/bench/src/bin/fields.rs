@@ -64,6 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 cells.extend(["failed"; 9].map(String::from));
             }
         }
+        writeln!(std::io::stderr(), "| {} |", cells.join(" | "))?;
         table.push(cells);
     }
     write!(std::io::stdout(), "{table}")?;

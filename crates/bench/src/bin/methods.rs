@@ -71,6 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     row_of("no map")
                 }
             });
+            writeln!(std::io::stderr(), "| {} |", cells.join(" | "))?;
             table.push(cells);
         }
     }

@@ -7,10 +7,12 @@
 )]
 
 use clap::{Parser, value_parser};
+use seamstress::mixed_integer::MixedIntegerOptions;
 use seamstress::rounding::RoundingStrategy;
-use seamstress::{MapError, MapOptions, MapSolution, Stage, make_map};
+use seamstress::{MapError, MapOptions, MapSolution, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
+use seamstress_bench::process::cpu_seconds;
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;
@@ -18,9 +20,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Maps every mesh of a folder with each strategy of rounding
+/// Maps every mesh of a folder with two strategies of rounding
 ///
-/// Prints the distortion, the cones and the times of both, and how they compare over all meshes.
+/// Prints the distortion, the cones and the times of both, and how they compare over all meshes. Times are
+/// of the processor, all threads together, where the system tells.
 #[derive(Debug, Parser)]
 struct Args {
     /// The folder of meshes; its subfolders are left out
@@ -34,6 +37,26 @@ struct Args {
     #[arg(long, value_name = "TEXT")]
     only: Option<String>,
 
+    /// Take only meshes of at most this many triangles
+    #[arg(long, default_value_t = usize::MAX)]
+    largest: usize,
+
+    /// Take only meshes of at least this many triangles
+    #[arg(long, default_value_t = 0)]
+    smallest: usize,
+
+    /// What to compare the default strategy with
+    #[arg(long, value_enum, default_value_t = Against::LocalEstimation)]
+    against: Against,
+
+    /// Most integer variables at a time in mixed-integer rounding
+    #[arg(long, default_value_t = MixedIntegerOptions::default().batch)]
+    batch: usize,
+
+    /// Most programs for each batch
+    #[arg(long, default_value_t = MixedIntegerOptions::default().nodes)]
+    nodes: usize,
+
     /// Give up on a map after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = value_parser!(u32).range(1..))]
     time_limit: Option<u32>,
@@ -41,6 +64,15 @@ struct Args {
     /// How much both avoid cones
     #[arg(long, value_name = "X", default_value_t = MapOptions::default().rounding.cone_bias)]
     cone_bias: f64,
+}
+
+/// Names of the strategies other than the default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Against {
+    /// Effect on a small patch
+    LocalEstimation,
+    /// Integer variables in programs of least tau
+    MixedInteger,
 }
 
 fn main() -> ExitCode {
@@ -60,6 +92,7 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let mut failures = Vec::new();
     for path in meshes::list(&args.folder, args.only.as_deref())? {
         match meshes::load(&path) {
+            Ok(mesh) if !args.takes(&mesh) => {}
             Ok(mesh) => match Row::measure(&path, &mesh, args) {
                 Ok(row) => {
                     eprintln!("| {} |", row.cells().join(" | "));
@@ -70,9 +103,10 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
             Err(error) => eprintln!("refused: {error}"),
         }
     }
-    let mut table = Table::new(titles());
+    let names = args.strategies().map(|(_, name)| name);
+    let mut table = Table::new(titles(names));
     rows.iter().for_each(|row| table.push(row.cells()));
-    let mut text = format!("{table}\n{}\n", comparison(&rows));
+    let mut text = format!("{table}\n{}\n", comparison(&rows, names));
     if !failures.is_empty() {
         text += &format!("\nFailed:\n\n{}\n", failures.join("\n"));
     }
@@ -83,26 +117,36 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     Ok(failures.is_empty())
 }
 
-/// The strategies, with short names.
-const STRATEGIES: [(RoundingStrategy, &str); 2] =
-    [(RoundingStrategy::ConeBias, "bias"), (RoundingStrategy::LocalEstimation, "local")];
+impl Args {
+    /// The strategies, with short names.
+    fn strategies(&self) -> [(RoundingStrategy, &'static str); 2] {
+        let other = match self.against {
+            Against::LocalEstimation => (RoundingStrategy::LocalEstimation, "local"),
+            Against::MixedInteger => (RoundingStrategy::MixedInteger, "mixed"),
+        };
+        [(RoundingStrategy::ConeBias, "bias"), other]
+    }
+
+    fn takes(&self, mesh: &Mesh) -> bool {
+        (self.smallest..=self.largest).contains(&mesh.connectivity.n_faces())
+    }
+}
 
 /// A figure of a map: its title, its decimals, its value.
 type Figure = (&'static str, usize, fn(&Made) -> f64);
 
-const FIGURES: [Figure; 6] = [
+const FIGURES: [Figure; 5] = [
     ("tau", 3, |made| made.solution.distortion.tau),
     ("SD", 4, |made| made.solution.distortion.symmetric_dirichlet),
     ("p99", 3, |made| made.solution.distortion.tau_t.p99),
     ("cones", 0, |made| made.solution.map.cones().len() as f64),
-    ("rounding s", 2, Made::rounding_seconds),
-    ("map s", 2, |made| made.seconds),
+    ("CPU s", 2, |made| made.seconds),
 ];
 
-fn titles() -> Vec<String> {
+fn titles(names: [&str; 2]) -> Vec<String> {
     let mut titles = vec!["mesh".to_owned(), "triangles".to_owned()];
     for (title, ..) in FIGURES {
-        titles.extend(STRATEGIES.map(|(_, name)| format!("{title}, {name}")));
+        titles.extend(names.map(|name| format!("{title}, {name}")));
     }
     titles
 }
@@ -118,23 +162,21 @@ impl Made {
         let mut options = MapOptions::default();
         options.rounding.strategy = strategy;
         options.rounding.cone_bias = args.cone_bias;
+        options.rounding.mixed_integer.batch = args.batch;
+        options.rounding.mixed_integer.nodes = args.nodes;
         let limit = args.time_limit.map(|seconds| Duration::from_secs(seconds.into()));
-        let start = Instant::now();
+        let (start, before) = (Instant::now(), cpu_seconds());
         let mut observe = |_| match limit {
             Some(limit) if start.elapsed() > limit => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),
         };
         let solution = make_map(&mesh.connectivity, &mesh.positions, &options, &mut observe)?;
-        Ok(Self { solution, seconds: start.elapsed().as_secs_f64() })
-    }
-
-    fn rounding_seconds(&self) -> f64 {
-        let stages = self.solution.components.iter().flat_map(|c| &c.stages);
-        stages.filter(|s| s.stage == Stage::Rounding).map(|s| s.seconds).sum()
+        let cpu = before.zip(cpu_seconds()).map(|(before, after)| after - before);
+        Ok(Self { solution, seconds: cpu.unwrap_or_else(|| start.elapsed().as_secs_f64()) })
     }
 }
 
-/// The maps of one mesh, one for each of the [`STRATEGIES`].
+/// The maps of one mesh, one for each strategy.
 struct Row {
     name: String,
     triangles: usize,
@@ -143,7 +185,7 @@ struct Row {
 
 impl Row {
     fn measure(path: &Path, mesh: &Mesh, args: &Args) -> Result<Self, String> {
-        let [first, second] = STRATEGIES.map(|(strategy, name)| {
+        let [first, second] = args.strategies().map(|(strategy, name)| {
             Made::new(mesh, strategy, args).map_err(|error| format!("{name}: {error}"))
         });
         Ok(Self {
@@ -163,8 +205,7 @@ impl Row {
 }
 
 /// How the second strategy compares with the first over all meshes.
-fn comparison(rows: &[Row]) -> String {
-    let [(_, first), (_, second)] = STRATEGIES;
+fn comparison(rows: &[Row], [first, second]: [&str; 2]) -> String {
     let mut text = format!("{second} against {first} over {} meshes:\n\n", rows.len());
     let line = |title: &str, value: &dyn Fn(&Made) -> f64| {
         let pairs: Vec<[f64; 2]> = rows.iter().map(|r| r.made.each_ref().map(value)).collect();

@@ -7,21 +7,25 @@ use std::path::PathBuf;
 const FIELD_EXAMPLES: &str = "\
 Examples:
   seamstress field bunny.ply bunny.obj -o bunny.rawfield
-  seamstress field bunny.ply bunny.obj -o bunny.rosy --sing bunny.sing --matching bunny.matching";
+  seamstress field bunny.ply bunny.obj -o bunny.rosy --sing bunny.sing --matching bunny.matching
+  seamstress field quads.obj -o quads.rawfield --sing quads.sing";
 
-/// Read the cross field off a seamless map
+/// Read the cross field off a seamless map, or off a quad mesh
 ///
 /// Frames come from the map's Jacobians, indices from its cone angles, matchings from its transitions
-/// across seams. `map --field` leads back to a map with the same cones.
+/// across seams. `map --field` leads back to a map with the same cones. Without a map the mesh must be of
+/// quads; its map is the layout of every quad as a unit square, and the field is one of the triangles into
+/// which `map` splits the quads, two for each.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{FIELD_EXAMPLES}\n\n{EXIT_CODES}"))]
 pub(crate) struct FieldArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh, or the quad mesh: OBJ, OFF, PLY or STL
     pub(crate) mesh: PathBuf,
 
-    /// A seamless map of the mesh: an OBJ file with a texture coordinate at every corner
+    /// A seamless map of the mesh: an OBJ file with a texture coordinate at every corner; not for a quad
+    /// mesh
     #[arg(value_name = "MAP.obj")]
-    pub(crate) map: PathBuf,
+    pub(crate) map: Option<PathBuf>,
 
     /// Write the field to this file: .rosy with one direction per face, else .rawfield with four
     #[arg(short, long, value_name = "FIELD")]
@@ -36,7 +40,7 @@ pub(crate) struct FieldArgs {
     pub(crate) matching: Option<PathBuf>,
 
     /// Repair the mesh first, as `map --repair` does
-    #[arg(long)]
+    #[arg(long, requires = "map")]
     pub(crate) repair: bool,
 
     /// How far the sides of a seam may be apart, in mean edge lengths of the map

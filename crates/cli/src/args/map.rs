@@ -4,6 +4,8 @@ use super::{
     ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, StartArgs, TextureArgs, not_negative, objective,
     seconds,
 };
+use clap::value_parser;
+use seamstress::mixed_integer::MixedIntegerOptions;
 use seamstress::rounding::{RoundingOptions, RoundingStrategy};
 use seamstress::{MapOptions, Objective, PolishOptions};
 use std::path::PathBuf;
@@ -18,7 +20,8 @@ Examples:
   seamstress map part.off -o part.obj --json | jq .distortion.tau
   seamstress map eight.off -o eight.obj --field eight.rawfield
   seamstress map eight.off -o eight.obj --cones eight.sing --free-cones
-  seamstress map eight.off -o eight.obj --method field --allow-flips";
+  seamstress map eight.off -o eight.obj --method field --allow-flips
+  seamstress map block.off -o block.obj --rounding mixed-integer --batch 800";
 
 /// Make a seamless map of a mesh
 ///
@@ -83,6 +86,29 @@ pub(crate) struct MapArgs {
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Rounding::ConeBias)]
     pub(crate) rounding: Rounding,
 
+    /// Matchings that are integer variables at a time, with `--rounding mixed-integer`
+    #[arg(
+        long,
+        value_name = "B",
+        value_parser = value_parser!(u32).range(1..),
+        default_value_t = MixedIntegerOptions::default().batch as u32
+    )]
+    pub(crate) batch: u32,
+
+    /// Programs solved for a batch at most, with `--rounding mixed-integer`
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = value_parser!(u32).range(1..),
+        default_value_t = MixedIntegerOptions::default().nodes as u32
+    )]
+    pub(crate) nodes: u32,
+
+    /// Stop `--rounding mixed-integer` after this many seconds and round what is left to the nearest
+    /// integers; the map then depends on the machine [default: no limit]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) rounding_time: Option<Duration>,
+
     /// Leave out the finish that lowers the largest distortion (tau)
     #[arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"])]
     pub(crate) no_tau_polish: bool,
@@ -119,6 +145,8 @@ pub(crate) enum Rounding {
     ConeBias,
     /// Effect on a small patch, and cones
     LocalEstimation,
+    /// Matchings as integer variables of the program of least tau, solved by branch and bound; slow
+    MixedInteger,
 }
 
 impl MapArgs {
@@ -129,6 +157,13 @@ impl MapArgs {
         options.rounding.strategy = match self.rounding {
             Rounding::ConeBias => RoundingStrategy::ConeBias,
             Rounding::LocalEstimation => RoundingStrategy::LocalEstimation,
+            Rounding::MixedInteger => RoundingStrategy::MixedInteger,
+        };
+        options.rounding.mixed_integer = MixedIntegerOptions {
+            batch: self.batch as usize,
+            nodes: self.nodes as usize,
+            time_limit: self.rounding_time,
+            ..MixedIntegerOptions::default()
         };
         options.strict_features = self.features_strict;
         options.polish = (!self.no_tau_polish).then_some(PolishOptions {

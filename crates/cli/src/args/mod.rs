@@ -20,7 +20,7 @@ pub(crate) use features::FeatureArgs;
 pub(crate) use field::FieldArgs;
 pub(crate) use integer::{GridRounding, IntegerArgs};
 pub(crate) use layout::LayoutArgs;
-pub(crate) use map::MapArgs;
+pub(crate) use map::{MapArgs, Rounding};
 pub(crate) use measure::MeasureArgs;
 pub(crate) use quad::QuadArgs;
 pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};

@@ -145,3 +145,51 @@ fn foreign_fields_and_angles_are_followed() {
         folder.expect(0, &["check", &mesh, "map.obj"]);
     }
 }
+
+/// The quads of a box of 2 x 1 x 1, bent in the middle.
+const BOX: &str = "\
+v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0
+v 0 0 1\nv 1 0 1.3\nv 2 0 1\nv 0 1 1\nv 1 1 0.8\nv 2 1 1
+f 1 4 5 2\nf 2 5 6 3\nf 7 8 11 10\nf 8 9 12 11
+f 1 2 8 7\nf 2 3 9 8\nf 4 10 11 5\nf 5 11 12 6
+f 1 7 10 4\nf 3 6 12 9\n";
+
+#[test]
+fn a_quad_mesh_has_a_field_whose_cones_are_its_irregular_vertices() {
+    let folder = Folder::new();
+    folder.write("box.obj", BOX);
+    let outputs = ["-o", "f.rawfield", "--sing", "f.sing", "--matching", "f.matching"];
+    folder.expect(0, &[&["field", "box.obj"], &outputs[..]].concat());
+    // The eight corners have three quads; the four vertices in the middle are regular.
+    let sing = folder.read("f.sing");
+    assert_eq!(sing, "4 8\n0 1\n2 1\n3 1\n5 1\n6 1\n8 1\n9 1\n11 1\n");
+    let field = folder.read("f.rawfield");
+    assert!(field.starts_with("4 20\n"), "{field}");
+    for start in [&["--field", "f.rawfield"][..], &["--matching", "f.matching"]] {
+        let arguments = [&["map", "box.obj", "-o", "map.obj", "--sing", "again.sing"], start];
+        folder.expect(0, &arguments.concat());
+        assert_eq!(folder.read("again.sing"), sing, "{start:?}");
+    }
+}
+
+#[test]
+fn the_field_of_a_quad_mesh_is_that_of_its_layout() {
+    let folder = Folder::new();
+    folder.write("box.obj", BOX);
+    folder.expect(0, &["layout-quads", "box.obj", "-o", "squares.obj"]);
+    folder.expect(
+        0,
+        &["field", "squares.obj", "squares.obj", "-o", "a.rawfield", "--sing", "a.sing"],
+    );
+    folder.expect(0, &["field", "box.obj", "-o", "b.rawfield", "--sing", "b.sing"]);
+    assert_eq!(folder.read("a.sing"), folder.read("b.sing"));
+}
+
+#[test]
+fn a_mesh_of_triangles_without_a_map_has_no_field_to_read_off() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    let run = folder.expect(1, &["field", "in.obj", "-o", "f.rawfield"]);
+    assert!(run.stderr.contains("not a quad mesh"), "{}", run.stderr);
+    assert!(!folder.names().contains(&"f.rawfield".to_owned()));
+}

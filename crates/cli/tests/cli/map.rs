@@ -192,3 +192,27 @@ fn repairs_are_listed_and_the_map_is_of_the_repaired_mesh() {
     folder.expect(1, &["check", "in.obj", "map.obj"]);
     folder.expect(0, &["check", "in.obj", "map.obj", "--repair"]);
 }
+
+#[test]
+fn mixed_integer_rounding_reports_incumbents_and_bounds() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::bumpy(&testkit::icosphere(1), 0.1, 7));
+    let map = ["map", "in.obj", "-o", "map.obj", "--rounding", "mixed-integer"];
+    let run = folder.expect(0, &[&map[..], &["--batch", "20", "--nodes", "15", "--json"]].concat());
+    let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(report["options"]["rounding"], "mixed-integer");
+    assert_eq!(report["options"]["batch"], 20);
+    let batches = report["components"][0]["mixed_integer"]["batches"].as_array().unwrap();
+    assert!(batches.len() >= 2);
+    for batch in batches {
+        let figure = |name: &str| batch[name].as_f64();
+        assert!(batch["integers"].as_u64().unwrap() <= 20);
+        assert!(batch["nodes"].as_u64().unwrap() <= 15);
+        assert!(figure("tau").is_none_or(|tau| figure("bound").unwrap() <= tau), "{batch}");
+    }
+    folder.expect(0, &["check", "in.obj", "map.obj"]);
+    let run = folder.expect(0, &[&map[..], &["--rounding-time", "0.000001"]].concat());
+    assert!(run.stdout.contains("certificate  passed"), "{}", run.stdout);
+    let features = [&map[..], &["--features", "angle:40"]].concat();
+    assert!(folder.expect(2, &features).stderr.contains("mixed-integer"));
+}

@@ -150,6 +150,20 @@ impl ExactLayout {
         Ok((layout, y))
     }
 
+    /// The layouts of a mesh, its boundary free, that close up to a matching per half-edge, zero across the
+    /// tree of an all-seam cut. Of what [`ExactLayout::defects`] tells only the flips mean something.
+    ///
+    /// # Errors
+    /// When the system cannot be set up.
+    pub(crate) fn closing(
+        mesh: &TriMesh,
+        metric: &Metric,
+        matching: &HalfedgeData<i32>,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let index = VertexData::filled(mesh.n_vertices(), 0);
+        Self::over(&Sectors::unaligned(mesh), metric, matching, index)
+    }
+
     /// Over the matching of every half-edge of the slit mesh, which counts modulo 4, and the index of
     /// every sector.
     fn over(
@@ -222,6 +236,26 @@ impl ExactLayout {
     ) -> Result<Vec<f64>, NotPositiveDefinite> {
         let targets = self.jacobians(mesh, |h| z[all_seams.wedge[h] as usize]);
         Ok(Poisson::new(&mut self.problem)?.solve(&targets))
+    }
+
+    /// The exact layout nearest to one given by the corners of its faces, in the gauge of the all-seam cut.
+    ///
+    /// # Errors
+    /// When the system cannot be factored.
+    pub(crate) fn nearest(
+        &mut self,
+        mesh: &TriMesh,
+        corner: &HalfedgeData<Complex64>,
+    ) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let targets = self.jacobians(mesh, |h| corner[h]);
+        Ok(Poisson::new(&mut self.problem)?.solve(&targets))
+    }
+
+    /// Corners of the faces of a layout, in the gauge of the all-seam cut.
+    pub(crate) fn corners(&self, mesh: &TriMesh, y: &[f64]) -> HalfedgeData<Complex64> {
+        let z = self.expand(y);
+        let corner = |h: Halfedge| turn(z[self.cut.wedge[h] as usize], -self.gauge[h.face()]);
+        mesh.halfedges().map(corner).collect()
     }
 
     /// As-rigid-as-possible layout that starts from frames in the gauge of the all-seam cut.

@@ -106,6 +106,7 @@ fn lay_out_field(
         metric_exponent: 1.0,
         rounding_rounds: begun.rounds,
         repaired_seams: 0,
+        mixed_integer: None,
         stages: clock.laps,
     };
     let mut y = y;

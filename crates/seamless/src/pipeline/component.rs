@@ -13,6 +13,7 @@ use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, lay_out, way_back};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::progress::{Stage, Watch};
+use crate::rounding::RoundingStrategy;
 use num_complex::Complex64;
 use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Component, Halfedge, Metric, TriMesh, VertexData};
@@ -21,6 +22,8 @@ use std::time::Instant;
 /// Exponents of the metrics to solve in: the mesh's own, then snowflakes for meshes whose triangles are
 /// too thin for arithmetic.
 const EXPONENTS: [f64; 3] = [1.0, 0.5, 0.3];
+/// Mixed-integer rounding of more triangles than this takes many minutes.
+const LAST_RESORT_FACES: usize = 20_000;
 /// Rounds in which features near defects are released, each with a wider ring.
 const RELEASE_ROUNDS: usize = 8;
 
@@ -89,7 +92,27 @@ fn map_unaligned(
             Err(failure) => first_failure = first_failure.or(Some(failure)),
         }
     }
-    Err(first_failure.unwrap_or(LayoutError::Defective(Default::default())))
+    let failure = first_failure.unwrap_or(LayoutError::Defective(Default::default()));
+    if let (LayoutError::Defective(_), Some(options)) =
+        (&failure, last_resort(mesh, start, options))
+    {
+        match solve(&sectors, metric, 1.0, start, &options, watch) {
+            Ok(solved) => return Ok(solved),
+            Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(_) => {}
+        }
+    }
+    Err(failure)
+}
+
+/// Mixed-integer rounding for a component that nothing else has mapped, if it is small enough and was not
+/// rounded in that way already.
+fn last_resort(mesh: &TriMesh, start: &Start, options: &MapOptions) -> Option<MapOptions> {
+    let mut last = *options;
+    last.rounding.strategy = RoundingStrategy::MixedInteger;
+    let is_new = options.rounding.strategy != last.rounding.strategy;
+    let is_fit = matches!(start, Start::Mesh) && mesh.n_faces() <= LAST_RESORT_FACES;
+    (is_new && is_fit).then_some(last)
 }
 
 /// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the
@@ -110,7 +133,8 @@ fn solve(
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
-    let begun = start.begin(sectors, &metric, options, watch)?;
+    let mut begun = start.begin(sectors, &metric, options, watch)?;
+    let mixed_integer = begun.mixed_integer.take();
     clock.lap(Stage::Rounding, begun.layouts);
 
     watch.enter(Stage::Layout)?;
@@ -185,6 +209,7 @@ fn solve(
         metric_exponent: exponent,
         rounding_rounds: rounds,
         repaired_seams: shifted_seams + mended_seams,
+        mixed_integer,
         stages: clock.laps,
     };
     Ok((uvs, stats))

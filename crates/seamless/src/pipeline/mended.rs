@@ -71,7 +71,8 @@ mod tests {
         let mut watch = Watch::new(&mut go_on, 0, 1);
         assert!(lay_out(&sectors, &metric, matched.clone(), None, &mut watch).is_err());
         let frames = frames_of_angles(&mesh, &metric, &metric.angle, &matched.tree);
-        let begun = Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams: 0 };
+        let begun =
+            Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams: 0, mixed_integer: None };
         let (laid, changed) = lay_out_or_mend(&sectors, &metric, begun, &mut watch).unwrap();
         assert!(changed > 0);
         assert!(laid.layout.defects(&sectors, &laid.y).none());

@@ -21,6 +21,7 @@ use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, Route};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use crate::mixed_integer::MixedIntegerStats;
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
@@ -99,6 +100,9 @@ pub struct ComponentStats {
     pub rounding_rounds: usize,
     /// Seams shifted to make indices possible or matchings consistent.
     pub repaired_seams: usize,
+    /// How mixed-integer rounding went, where it was asked for or was the last resort.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mixed_integer: Option<MixedIntegerStats>,
     /// Seconds and iterations by stage.
     pub stages: Vec<StageStats>,
 }

@@ -14,8 +14,9 @@ use crate::layout::exact::Defects;
 use crate::layout::isometric::frames_of_angles;
 use crate::layout::safeguards::LayoutError;
 use crate::map::{Violation, Violations};
+use crate::mixed_integer::{MixedIntegerStats, round_mixed_integer};
 use crate::progress::Watch;
-use crate::rounding::{MatchedCut, fix_holonomy, repair, round};
+use crate::rounding::{MatchedCut, RoundingStrategy, fix_holonomy, repair, round};
 use num_complex::Complex64;
 use seamstress_surface::{Component, Metric, TriMesh};
 
@@ -44,6 +45,7 @@ pub(super) struct Begun {
     pub(super) rounds: usize,
     pub(super) layouts: usize,
     pub(super) shifted_seams: usize,
+    pub(super) mixed_integer: Option<MixedIntegerStats>,
 }
 
 impl Start {
@@ -114,7 +116,14 @@ impl Start {
             Start::SmoothField => smooth(sectors, metric, watch)?.repaired(sectors, metric),
             Start::Field(field) => {
                 let (matched, frames) = matched_cut(mesh, metric, field);
-                Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams: 0 })
+                Ok(Begun {
+                    matched,
+                    frames,
+                    rounds: 0,
+                    layouts: 0,
+                    shifted_seams: 0,
+                    mixed_integer: None,
+                })
             }
             Start::Map(uvs) => from_map(mesh, metric, uvs, watch),
             Start::Cones(cones) => {
@@ -152,9 +161,18 @@ fn rounded(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Begun, LayoutError> {
     let mut matched = MatchedCut::through_curved_sectors(sectors, metric);
-    let (frames, stats) = round(sectors, metric, &mut matched, &options.rounding, watch)?;
+    let rounding = &options.rounding;
+    if rounding.strategy == RoundingStrategy::MixedInteger && !sectors.any_aligned() {
+        let mesh = sectors.mesh();
+        let settings = &rounding.mixed_integer;
+        let (frames, stats) = round_mixed_integer(mesh, metric, &mut matched, settings, watch)?;
+        let (rounds, layouts) = (stats.batches.len(), stats.nodes());
+        let mixed_integer = Some(stats);
+        return Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0, mixed_integer });
+    }
+    let (frames, stats) = round(sectors, metric, &mut matched, rounding, watch)?;
     let (rounds, layouts) = (stats.rounds, stats.layouts);
-    Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0 })
+    Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0, mixed_integer: None })
 }
 
 /// The matchings of a map, made consistent. Its flipped triangles have angles far from any possible
@@ -172,7 +190,7 @@ fn from_map(
     let (matched, consistent) = consistent_cut(mesh, metric, &read, &angles, &options, watch)?;
     let frames = frames_of_angles(mesh, metric, &consistent.angles, &matched.tree);
     let shifted_seams = consistent.stats.changed_matchings;
-    Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams })
+    Ok(Begun { matched, frames, rounds: 0, layouts: 0, shifted_seams, mixed_integer: None })
 }
 
 /// The matchings of a smooth cross field.
@@ -184,5 +202,5 @@ pub(super) fn smooth(
     let mut matched = MatchedCut::through_curved_sectors(sectors, metric);
     let (frames, stats) = smooth_field(sectors.mesh(), metric, &mut matched, watch)?;
     let (rounds, layouts) = (stats.rounds, stats.solves);
-    Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0 })
+    Ok(Begun { matched, frames, rounds, layouts, shifted_seams: 0, mixed_integer: None })
 }

@@ -7,6 +7,7 @@ use super::weights::SectorWeights;
 use crate::features::Sectors;
 use crate::layout::homotopy::HomotopyError;
 use crate::layout::isometric::unfold;
+use crate::mixed_integer::MixedIntegerOptions;
 use crate::progress::Watch;
 use num_complex::Complex64;
 use seamstress_surface::{Halfedge, Metric, TriMesh, VertexData};
@@ -20,6 +21,9 @@ pub enum RoundingStrategy {
     ConeBias,
     /// By the change of energy it makes on a small patch around the seam, the seed's local estimation.
     LocalEstimation,
+    /// By programs in which matchings are integer variables, see [`crate::mixed_integer`]. Components with
+    /// aligned edges are rounded by [`Self::ConeBias`].
+    MixedInteger,
 }
 
 /// Settings of the rounding loop.
@@ -39,6 +43,8 @@ pub struct RoundingOptions {
     pub rounds: usize,
     /// Layout iterations per round.
     pub layout_iterations: usize,
+    /// Settings of [`RoundingStrategy::MixedInteger`].
+    pub mixed_integer: MixedIntegerOptions,
 }
 
 impl Default for RoundingOptions {
@@ -49,6 +55,7 @@ impl Default for RoundingOptions {
             corner_weight: 1.0,
             rounds: 60,
             layout_iterations: 8,
+            mixed_integer: MixedIntegerOptions::default(),
         }
     }
 }

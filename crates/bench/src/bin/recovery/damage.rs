@@ -1,7 +1,7 @@
 //! What is done to a good map.
 
 use seamstress::consistency::lifted_angles;
-use seamstress_surface::{HalfedgeData, TriMesh};
+use seamstress_surface::{Face, Halfedge, HalfedgeData, TriMesh};
 use seamstress_testkit::Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -22,13 +22,15 @@ pub(crate) enum Damage {
     Angles,
     /// 1 % of the vertices, one at least, dragged by two edge lengths in the plane: foldovers
     Foldovers,
+    /// The Poisson layout of a smooth cross field in place of the good map, with the foldovers it has
+    Field,
     /// Every matching rounded at once, to stay close to the angles of the surface
     Naive,
 }
 
 impl Damage {
-    pub(crate) const ALL: [Damage; 4] =
-        [Damage::Matchings, Damage::Angles, Damage::Foldovers, Damage::Naive];
+    pub(crate) const ALL: [Damage; 5] =
+        [Damage::Matchings, Damage::Angles, Damage::Foldovers, Damage::Field, Damage::Naive];
 }
 
 impl std::fmt::Display for Damage {
@@ -37,6 +39,7 @@ impl std::fmt::Display for Damage {
             Damage::Matchings => "matchings",
             Damage::Angles => "angles",
             Damage::Foldovers => "foldovers",
+            Damage::Field => "field",
             Damage::Naive => "naive",
         })
     }
@@ -73,10 +76,6 @@ pub(crate) fn folded_angles(
     rng: &mut Rng,
 ) -> (HalfedgeData<f64>, usize) {
     let mut uvs = corner_uvs.to_vec();
-    let edge = |uvs: &[[f64; 2]], h: seamstress_surface::Halfedge| {
-        let (a, b) = (uvs[h.at()], uvs[h.next().at()]);
-        [b[0] - a[0], b[1] - a[1]]
-    };
     let mean = mesh.halfedges().map(|h| edge(&uvs, h)).map(|e| e[0].hypot(e[1])).sum::<f64>()
         / mesh.n_halfedges() as f64;
     let count = ((DRAGGED * mesh.n_vertices() as f64).round() as usize).max(1);
@@ -96,10 +95,20 @@ pub(crate) fn folded_angles(
             *uv = [uv[0] + DRAG * mean * x, uv[1] + DRAG * mean * y];
         }
     }
-    let flips = mesh.faces().filter(|f| {
-        let [a, b, _] = f.halfedges().map(|h| edge(&uvs, h));
+    (lifted_angles(mesh, &uvs), count_flips(mesh, &uvs))
+}
+
+/// How many triangles are flipped or collapsed.
+pub(crate) fn count_flips(mesh: &TriMesh, uvs: &[[f64; 2]]) -> usize {
+    let flipped = |f: &Face| {
+        let [a, b, _] = f.halfedges().map(|h| edge(uvs, h));
         a[0] * b[1] - a[1] * b[0] <= 0.0
-    });
-    let flips = flips.count();
-    (lifted_angles(mesh, &uvs), flips)
+    };
+    mesh.faces().filter(flipped).count()
+}
+
+/// The image of a half-edge.
+fn edge(uvs: &[[f64; 2]], h: Halfedge) -> [f64; 2] {
+    let (a, b) = (uvs[h.at()], uvs[h.next().at()]);
+    [b[0] - a[0], b[1] - a[1]]
 }

@@ -1,6 +1,6 @@
 //! One mesh: its good map, damaged, made consistent, laid out.
 
-use crate::damage::{Damage, folded_angles, noisy_angles, wrong_matchings};
+use crate::damage::{Damage, count_flips, folded_angles, noisy_angles, wrong_matchings};
 use seamstress::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut, lifted_angles,
     matched_by_angles,
@@ -11,18 +11,21 @@ use seamstress::layout::isometric::frames_of_angles;
 use seamstress::layout::safeguards::lay_out;
 use seamstress::progress::Watch;
 use seamstress::rounding::MatchedCut;
-use seamstress::{MapError, MapOptions, SeamlessMap, Tolerance, make_map};
+use seamstress::{
+    FieldMapOptions, MapError, MapOptions, SeamlessMap, Tolerance, make_field_map, make_map,
+};
 use seamstress_bench::meshes::Mesh;
 use seamstress_bench::process::cpu_seconds;
 use seamstress_surface::{HalfedgeData, Metric, TriMesh, components::components};
 use seamstress_testkit::{CheckedSeam, Rng, consistency_faults};
 use std::ops::ControlFlow;
 
-/// A component with the corner UVs of its good map.
+/// A component with the corner UVs of its good map, and of the layout of a smooth field.
 struct Piece {
     mesh: TriMesh,
     metric: Metric,
     corner_uvs: Vec<[f64; 2]>,
+    field_uvs: Vec<[f64; 2]>,
 }
 
 /// A mesh with a good map.
@@ -99,13 +102,22 @@ impl Subject {
         let mut go_on = |_| ControlFlow::Continue(());
         let options = MapOptions::default();
         let made = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?;
+        let field_options = FieldMapOptions::default();
+        let field =
+            make_field_map(&mesh.connectivity, &mesh.positions, &field_options, &mut go_on)?;
+        let field = match &field.map {
+            Ok(map) => map.corner_uvs(),
+            Err(layout) => &layout.corner_uvs,
+        };
         let uvs = made.map.corner_uvs();
         let pieces = components(&mesh.connectivity).unwrap_or_default();
         let piece = |piece: seamstress_surface::Component| {
             let positions: Vec<_> = piece.vertices.iter().map(|v| mesh.positions[v.at()]).collect();
             let metric = Metric::from_positions(&piece.mesh, &positions);
-            let corner_uvs = piece.faces.iter().flat_map(|f| f.halfedges()).map(|h| uvs[h.at()]);
-            Piece { metric, corner_uvs: corner_uvs.collect(), mesh: piece.mesh }
+            let corners = || piece.faces.iter().flat_map(|f| f.halfedges());
+            let corner_uvs = corners().map(|h| uvs[h.at()]).collect();
+            let field_uvs = corners().map(|h| field[h.at()]).collect();
+            Piece { metric, corner_uvs, field_uvs, mesh: piece.mesh }
         };
         Ok(Self { pieces: pieces.into_iter().map(piece).collect() })
     }
@@ -167,6 +179,12 @@ impl Piece {
             Damage::Foldovers => {
                 let (angles, flips) = folded_angles(&self.mesh, &self.corner_uvs, rng);
                 outcome.flips += flips;
+                matched = matched_by_angles(&self.mesh, &self.metric, matched.tree, &angles);
+                angles
+            }
+            Damage::Field => {
+                outcome.flips += count_flips(&self.mesh, &self.field_uvs);
+                let angles = lifted_angles(&self.mesh, &self.field_uvs);
                 matched = matched_by_angles(&self.mesh, &self.metric, matched.tree, &angles);
                 angles
             }

@@ -131,6 +131,9 @@ pub(super) fn run(
         SolverStatus::Solved => Outcome::Solved,
         SolverStatus::MaxIterations => Outcome::IterationLimit,
         SolverStatus::InsufficientProgress => Outcome::Stalled,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            Outcome::Infeasible
+        }
         _ => Outcome::ReferenceFailed,
     };
     let (primal, dual) = (solver.solution.obj_val, solver.solution.obj_val_dual);

@@ -47,6 +47,8 @@ pub enum Outcome {
     Stalled,
     /// The layout given is not inside the program's constraints, where the own solver starts.
     NoInteriorStart,
+    /// No layout satisfies the program, as the reference solver has proven.
+    Infeasible,
     /// The reference solver ended otherwise.
     ReferenceFailed,
 }
@@ -94,7 +96,8 @@ pub fn solve(
         return Ok(own);
     }
     let other = reference::solve(problem, program, options, watch)?;
-    if other.outcome == Outcome::Solved || other.objective < own.objective {
+    let neither = own.outcome == Outcome::NoInteriorStart && other.outcome == Outcome::Infeasible;
+    if neither || other.outcome == Outcome::Solved || other.objective < own.objective {
         return Ok(ConicSolution { fallback_from: Some(own.outcome), ..other });
     }
     Ok(own)
