@@ -329,10 +329,47 @@ fn maps_refuse_what_checks_refuse() {
     assert_eq!(folder.names(), ["in.obj", "p.txt"]);
 }
 
+/// The folder of the collection of meshes, which need not exist.
+fn collection() -> PathBuf {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
+    std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from)
+}
+
+#[test]
+fn meshes_of_the_collection_have_their_features_aligned() {
+    // Most features released, and the largest tau.
+    for (name, released, tau) in
+        [("flap", 0, 1.40), ("chipped_torus", 0, 1.38), ("halved_scarf", 19, 2.51)]
+    {
+        let mesh = collection().join(name).with_extension("obj");
+        if !mesh.is_file() {
+            println!("skipped: no {}", mesh.display());
+            continue;
+        }
+        let mesh = mesh.to_str().unwrap();
+        let folder = Folder::new();
+        let aligned = ["--features", "angle:40", "--align-boundary"];
+        let map = |file: &str, threads: &str| {
+            let arguments = ["map", mesh, "-o", file, "--json", "--threads", threads];
+            let run = folder.expect(0, &[&arguments[..], &aligned].concat());
+            serde_json::from_str::<Value>(&run.stdout).unwrap()
+        };
+        let report = map("one.obj", "1");
+        map("two.obj", "2");
+        assert_eq!(folder.read("one.obj"), folder.read("two.obj"));
+        let features = &report["features"];
+        let gone = features["released"].as_array().unwrap().len();
+        assert!(gone <= released, "{name}: {gone} released");
+        assert_eq!(features["kept"].as_u64(), features["edges"].as_u64().map(|n| n - gone as u64));
+        assert!(features["alignment"]["axis_error"].as_f64().unwrap() < 1e-9);
+        let found = report["distortion"]["tau"].as_f64().unwrap();
+        assert!(found < tau, "{name}: tau {found}");
+    }
+}
+
 #[test]
 fn the_sharp_file_of_the_collection() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    let meshes = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
+    let meshes = collection();
     let [mesh, sharp] = ["obj", "sharp"].map(|e| meshes.join(format!("bracket_inches_rem.{e}")));
     if !mesh.is_file() || !sharp.is_file() {
         println!("skipped: no bracket_inches_rem in {}", meshes.display());

@@ -150,7 +150,7 @@ const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-
 /// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation,
 /// the same over a better dual tree, the homotopies in snowflake metrics, in this order, until one has
 /// no flip and no wrong angle. (No flip alone is not enough: a vertex may be wound once too often.) With
-/// aligned edges the snowflake metrics are left out.
+/// aligned edges the new tree and the snowflake metrics are left out.
 ///
 /// `start`: frames in the gauge of the all-seam cut.
 ///
@@ -289,7 +289,7 @@ enum Attempt {
 }
 
 impl Homotopies {
-    /// Barrier, continuation, continuation over a new tree.
+    /// Barrier, continuation and, unless edges are aligned, continuation over a new tree.
     fn run(
         &mut self,
         sectors: &Sectors<'_>,
@@ -308,6 +308,10 @@ impl Homotopies {
             Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
+        if sectors.any_aligned() {
+            // Each try costs as much as all before it; releasing an edge is the better way out.
+            return Ok(Attempt::Failed(Box::new(matched)));
+        }
         let other = retree(sectors, metric, &matched);
         let closed = homotopy::continuation(sectors, metric, &other, &settings, watch)?;
         Ok(match self.accept(sectors, metric, other, closed, Route::Retreed)? {

@@ -6,19 +6,23 @@
     reason = "the table and its progress are what this program is for"
 )]
 
+mod verify;
+mod weights;
+
 use clap::Parser;
-use seamstress::{MapOptions, MapSolution, make_aligned_map};
+use seamstress::{MapOptions, MapSolution, Sectors, make_aligned_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::cpu_seconds;
 use seamstress_surface::features::{EdgeSet, sharp_edges};
-use seamstress_surface::{Halfedge, TriMesh};
+use seamstress_surface::{Halfedge, Metric, VertexData};
 use std::error::Error;
-use std::fmt::Write;
+use std::f64::consts::FRAC_PI_2;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use verify::Verifier;
 
 /// Maps meshes with their features aligned, and without
 ///
@@ -38,18 +42,28 @@ struct Args {
     #[arg(long, value_name = "X", default_value_t = MapOptions::default().rounding.corner_weight)]
     corner_weight: f64,
 
+    /// Compare the maps for these weights instead
+    #[arg(long, value_name = "X,X,...", value_delimiter = ',', conflicts_with = "verify")]
+    corner_weights: Vec<f64>,
+
     /// Distortion that may be paid for one cone fewer
     #[arg(long, value_name = "X", default_value_t = MapOptions::default().cone_price)]
     cone_price: f64,
 
-    /// Write the maps (OBJ) and the kept features (vertex pairs) to this folder
-    #[arg(long, value_name = "DIR")]
+    /// Map with `seamstress map` as well and check its map with `python3 SCRIPT --strict SOURCE MAP
+    /// --features PAIRS`, which prints a JSON object
+    #[arg(long, value_name = "SCRIPT")]
+    verify: Option<PathBuf>,
+
+    /// Keep the maps that are checked, and their kept features as vertex pairs, in this folder
+    #[arg(long, value_name = "DIR", requires = "verify")]
     maps: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(2)
@@ -57,7 +71,7 @@ fn main() -> ExitCode {
     }
 }
 
-const TITLES: [&str; 13] = [
+const TITLES: [&str; 14] = [
     "mesh",
     "triangles",
     "features",
@@ -65,46 +79,71 @@ const TITLES: [&str; 13] = [
     "relaxed",
     "cones",
     "unal.",
-    "S = 3",
+    "corners off",
     "tau",
     "unal.",
     "SD",
     "unal.",
-    "CPU ratio",
+    "CPU s (unal.)",
+    "verified",
 ];
 
-fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+/// Whether all went well.
+fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+    if !args.corner_weights.is_empty() {
+        print!("{}", weights::table(args, &args.corner_weights)?);
+        return Ok(true);
+    }
+    let temporary = tempfile::tempdir()?;
+    let folder = args.maps.as_deref().unwrap_or(temporary.path()).to_owned();
+    fs::create_dir_all(&folder)?;
+    let seamstress = std::env::current_exe()?.with_file_name("seamstress");
+    let verifier = args.verify.clone().map(|script| Verifier { seamstress, script, folder });
     let mut table = Table::new(TITLES);
+    let mut all_well = true;
     for path in &args.meshes {
         let mesh = meshes::load(path)?;
-        match row(path, &mesh, args) {
+        match row(path, &mesh, args, verifier.as_ref()) {
             Ok(row) => {
                 eprintln!("| {} |", row.join(" | "));
                 table.push(row);
             }
-            Err(error) => eprintln!("{}: {error}", meshes::name(path)),
+            Err(error) => {
+                eprintln!("{}: {error}", meshes::name(path));
+                all_well = false;
+            }
         }
     }
     print!("{table}");
-    Ok(())
+    Ok(all_well)
 }
 
-fn row(path: &Path, mesh: &Mesh, args: &Args) -> Result<Vec<String>, Box<dyn Error>> {
+fn row(
+    path: &Path,
+    mesh: &Mesh,
+    args: &Args,
+    verifier: Option<&Verifier>,
+) -> Result<Vec<String>, Box<dyn Error>> {
     let connectivity = &mesh.connectivity;
-    let sharp = path.with_extension("sharp");
-    let interior = if sharp.is_file() {
-        let lines = seamstress_io::read_sharp(&sharp)?;
-        let side = |line: seamstress_io::SharpLine| Halfedge(3 * line.face + line.side);
-        EdgeSet::new(connectivity, lines.into_iter().map(side))
-    } else {
-        sharp_edges(connectivity, &mesh.positions, args.angle.to_radians())
-    };
-    let features = interior.union(connectivity, &EdgeSet::boundary(connectivity));
-    let (plain, plain_cpu) = timed(mesh, &EdgeSet::new(connectivity, []), args)?;
-    let (aligned, aligned_cpu) = timed(mesh, &features, args)?;
-    if let Some(folder) = &args.maps {
-        write(folder, path, mesh, &aligned)?;
-    }
+    let (features, source) = features_of(path, mesh, args)?;
+    let mut options = MapOptions::default();
+    options.rounding.corner_weight = args.corner_weight;
+    options.cone_price = args.cone_price;
+    let (plain, plain_cpu) = solve(mesh, &EdgeSet::new(connectivity, []), &options)?;
+    let (aligned, aligned_cpu) = solve(mesh, &features, &options)?;
+    let verdict = verifier.map(|verifier| {
+        let arguments = [
+            "--features",
+            &source,
+            "--align-boundary",
+            "--corner-weight",
+            &args.corner_weight.to_string(),
+            "--cone-price",
+            &args.cone_price.to_string(),
+        ];
+        verifier.verify(path, mesh, &arguments.map(str::to_owned), &aligned)
+    });
+    let verdict = verdict.transpose()?;
     let relaxed =
         aligned.released.iter().filter(|r| r.reason == seamstress::ReleaseReason::NoLayout);
     let relaxed = relaxed.count();
@@ -117,69 +156,63 @@ fn row(path: &Path, mesh: &Mesh, args: &Args) -> Result<Vec<String>, Box<dyn Err
         relaxed.to_string(),
         aligned.map.cones().len().to_string(),
         plain.map.cones().len().to_string(),
-        corners_of_three(connectivity, &aligned).to_string(),
+        corners_off(mesh, &aligned).0.to_string(),
         format!("{:.2}", a.tau),
         format!("{:.2}", p.tau),
         format!("{:.3}", a.symmetric_dirichlet),
         format!("{:.3}", p.symmetric_dirichlet),
-        format!("{aligned_cpu:.2} / {plain_cpu:.2}"),
+        format!("{aligned_cpu:.2} ({plain_cpu:.2})"),
+        verdict.unwrap_or_default(),
     ])
 }
 
-fn timed(
+/// The features of a mesh and the boundary; and how to ask `seamstress map` for the former.
+fn features_of(path: &Path, mesh: &Mesh, args: &Args) -> Result<(EdgeSet, String), Box<dyn Error>> {
+    let connectivity = &mesh.connectivity;
+    let sharp = path.with_extension("sharp");
+    let (interior, source) = if sharp.is_file() {
+        let lines = seamstress_io::read_sharp(&sharp)?;
+        let side = |line: seamstress_io::SharpLine| Halfedge(3 * line.face + line.side);
+        let edges = EdgeSet::new(connectivity, lines.into_iter().map(side));
+        (edges, format!("sharp:{}", sharp.display()))
+    } else {
+        let edges = sharp_edges(connectivity, &mesh.positions, args.angle.to_radians());
+        (edges, format!("angle:{}", args.angle))
+    };
+    Ok((interior.union(connectivity, &EdgeSet::boundary(connectivity)), source))
+}
+
+/// A map, and the CPU seconds it took.
+fn solve(
     mesh: &Mesh,
     features: &EdgeSet,
-    args: &Args,
+    options: &MapOptions,
 ) -> Result<(MapSolution, f64), Box<dyn Error>> {
-    let mut options = MapOptions::default();
-    options.rounding.corner_weight = args.corner_weight;
-    options.cone_price = args.cone_price;
     let start = cpu_seconds().unwrap_or_default();
     let mut go_on = |_| ControlFlow::Continue(());
     let solution =
-        make_aligned_map(&mesh.connectivity, &mesh.positions, features, &options, &mut go_on)?;
+        make_aligned_map(&mesh.connectivity, &mesh.positions, features, options, &mut go_on)?;
     Ok((solution, cpu_seconds().unwrap_or_default() - start))
 }
 
-/// Corners between kept features whose angle in the map is three quarters of a turn.
-fn corners_of_three(mesh: &TriMesh, solution: &MapSolution) -> usize {
-    let aligned = mesh.halfedges().map(|h| solution.features.contains(h)).collect();
-    let (slit, _) = mesh.slit(&aligned);
-    let angle = |h: Halfedge| {
+/// Corners between kept features whose angle in the map is not the multiple of a quarter turn nearest to that
+/// on the surface; and all corners.
+fn corners_off(mesh: &Mesh, solution: &MapSolution) -> (usize, usize) {
+    let connectivity = &mesh.connectivity;
+    let metric = Metric::from_positions(connectivity, &mesh.positions);
+    let sectors = Sectors::new(connectivity, &metric, &solution.features);
+    let slit = sectors.slit();
+    let mut quarters = VertexData::filled(slit.n_vertices(), 0.0);
+    for h in connectivity.halfedges() {
         let [a, b, c] = [h, h.next(), h.prev()].map(|c| solution.map.corner_uvs()[c.at()]);
         let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
-        (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]).to_degrees()
+        let angle = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
+        quarters[slit.origin(h)] += angle / FRAC_PI_2;
+    }
+    let is_off = |&s: &_| {
+        let preferred = sectors.quarters(s, f64::from(sectors.preferred(s)));
+        (quarters[s] - preferred).abs() > 0.5
     };
-    let is_three = |&s: &_| (slit.outgoing(s).map(angle).sum::<f64>() - 270.0).abs() < 1.0;
-    slit.vertices().filter(|&s| slit.is_boundary(s)).filter(is_three).count()
-}
-
-/// Writes a map with texture coordinates per corner, and its kept features.
-fn write(
-    folder: &Path,
-    path: &Path,
-    mesh: &Mesh,
-    solution: &MapSolution,
-) -> Result<(), Box<dyn Error>> {
-    fs::create_dir_all(folder)?;
-    let stem = path.file_stem().unwrap_or_default();
-    let mut text = String::new();
-    for [x, y, z] in &mesh.positions {
-        writeln!(text, "v {x:?} {y:?} {z:?}")?;
-    }
-    for [u, v] in solution.map.corner_uvs() {
-        writeln!(text, "vt {u:?} {v:?}")?;
-    }
-    for f in mesh.connectivity.faces() {
-        let corners = f.halfedges().map(|h| {
-            let (v, t) = (mesh.connectivity.origin(h).0 + 1, h.0 + 1);
-            format!("{v}/{t}")
-        });
-        writeln!(text, "f {}", corners.join(" "))?;
-    }
-    fs::write(folder.join(stem).with_extension("obj"), text)?;
-    let pairs = solution.features.vertex_pairs(&mesh.connectivity);
-    let lines: String = pairs.iter().map(|[a, b]| format!("{a} {b}\n")).collect();
-    fs::write(folder.join(stem).with_extension("pairs"), lines)?;
-    Ok(())
+    let corners = || slit.vertices().filter(|&s| sectors.is_corner(s));
+    (corners().filter(is_off).count(), corners().count())
 }
