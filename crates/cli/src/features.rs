@@ -3,12 +3,13 @@
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
 use crate::report;
+use seamstress::map::edges_along_axes;
 use seamstress::{Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations};
 use seamstress_io::{read_pairs, read_sharp};
 use seamstress_surface::features::{
     EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
 };
-use seamstress_surface::{Halfedge, Metric, TriMesh};
+use seamstress_surface::{Halfedge, Metric, TriMesh, Vertex};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -109,6 +110,21 @@ impl Features {
         let graph = FeatureGraph::new(connectivity, &metric, &edges);
         let pairs = edges.vertex_pairs(connectivity);
         Ok(Self { edges, pairs, graph, sources: counts, align_boundary })
+    }
+
+    /// Those that run along the axes of a map.
+    pub(crate) fn aligned_in(
+        mut self,
+        map: &SeamlessMap,
+        mesh: &LoadedMesh,
+        connectivity: &TriMesh,
+    ) -> Self {
+        let tolerance = AlignmentTolerance::default();
+        self.pairs = edges_along_axes(connectivity, map, &self.pairs, &tolerance);
+        self.edges = edges_of(connectivity, &self.pairs);
+        let metric = Metric::from_positions(connectivity, &mesh.soup.positions);
+        self.graph = FeatureGraph::new(connectivity, &metric, &self.edges);
+        self
     }
 
     /// Number of edges on the boundary of the mesh.
@@ -214,6 +230,12 @@ impl AlignedFeatures {
         value["alignment"] = report::alignment_json(&self.alignment);
         value
     }
+}
+
+/// The set of edges with these ends.
+pub(crate) fn edges_of(connectivity: &TriMesh, pairs: &[[u32; 2]]) -> EdgeSet {
+    let edge = |&[a, b]: &[u32; 2]| connectivity.edge_between(Vertex(a), Vertex(b));
+    EdgeSet::new(connectivity, pairs.iter().filter_map(edge))
 }
 
 /// Turns the names of a source into edges.

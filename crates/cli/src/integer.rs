@@ -1,6 +1,7 @@
 //! `seamstress integer`.
 
-use crate::args::{ConeArgs, GridRounding, IntegerArgs};
+use crate::args::{ConeArgs, FeatureArgs, GridRounding, IntegerArgs};
+use crate::features::{AlignedFeatures, Features, edges_of};
 use crate::input::LoadedMesh;
 use crate::job::{Job, Worker};
 use crate::map_file::MapFile;
@@ -10,11 +11,11 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::integer::IntegerStats;
+use seamstress::integer::{IntegerCertificate, IntegerStats};
 use seamstress::map::compare_source;
 use seamstress::{
-    GridSize, IntegerError, IntegerSolution, MapError, SeamlessMap, Violations, make_map,
-    to_integer_map,
+    GridSize, IntegerError, IntegerOptions, IntegerSolution, MapError, SeamlessMap, Violations,
+    make_aligned_map, to_aligned_integer_map,
 };
 use seamstress_io::{MapObj, write_map_obj};
 use seamstress_surface::TriMesh;
@@ -26,6 +27,8 @@ use std::path::Path;
 struct Product {
     mesh: LoadedMesh,
     solution: IntegerSolution,
+    /// The features that lie on lines of the grid, if any were asked for.
+    features: Option<AlignedFeatures>,
     pictures: Option<[Vec<u8>; 3]>,
 }
 
@@ -47,8 +50,8 @@ fn plan(args: &IntegerArgs) -> Result<Plan, Failure> {
     }
     targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
     targets.push(Target::new(Kind::Map, &args.output));
-    let inputs: Vec<&Path> =
-        std::iter::once(&args.mesh).chain(&args.map).map(AsRef::as_ref).collect();
+    let given = std::iter::once(&args.mesh).chain(&args.map).map(AsRef::as_ref);
+    let inputs: Vec<&Path> = given.chain(args.features.files()).collect();
     Plan::new(&inputs, args.pictures.as_deref(), targets)
 }
 
@@ -59,32 +62,63 @@ fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
         mesh.tell_findings();
     }
     let connectivity = mesh.connect()?;
-    let map = match &args.map {
+    let start = match &args.map {
         Some(path) => read_map(args, path, &mesh, &connectivity)?,
-        None => make_seamless(&args.method, &mesh, &connectivity, &mut worker)?,
+        None => make_seamless(&args.method, &args.features, &mesh, &connectivity, &mut worker)?,
     };
-    let positions = &mesh.soup.positions;
-    let made = to_integer_map(&connectivity, positions, &map, &args.options(), &mut |progress| {
-        worker.observe(progress)
-    });
-    let solution = made.map_err(|cause| {
-        let file = mesh.path.clone();
-        match (cause, worker.stop.reason()) {
-            (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
-            (cause, _) => Failure::NoIntegerMap { file, cause, advice: advice(args) },
-        }
-    })?;
+    let solution =
+        make_integer(&start, &args.options(), advice(args), &mesh, &connectivity, &mut worker)?;
     worker.stop.lift_limit();
     // One check per quad, unless told otherwise.
     let texture = args.texture.or_period(1.0);
     let pictures = match &args.pictures {
-        Some(_) => Some(pictures::draw(&mesh.soup, solution.map.seamless(), None, &texture)),
+        Some(_) => Some(pictures::draw(
+            &mesh.soup,
+            solution.map.seamless(),
+            start.features.as_ref(),
+            &texture,
+        )),
         None => None,
     };
     let pictures = pictures
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, solution, pictures })
+    Ok(Product { mesh, solution, features: start.features, pictures })
+}
+
+/// What an integer map is made from.
+pub(crate) struct SeamlessStart {
+    pub(crate) map: SeamlessMap,
+    pub(crate) features: Option<AlignedFeatures>,
+}
+
+/// Rounds a seamless map, its aligned features to lines of the grid.
+pub(crate) fn make_integer(
+    start: &SeamlessStart,
+    options: &IntegerOptions,
+    advice: &'static str,
+    mesh: &LoadedMesh,
+    connectivity: &TriMesh,
+    worker: &mut Worker,
+) -> Result<IntegerSolution, Failure> {
+    let kept: &[[u32; 2]] = start.features.as_ref().map_or(&[], |features| &features.kept);
+    let (aligned, positions) = (edges_of(connectivity, kept), &mesh.soup.positions);
+    let mut observe = |progress| worker.observe(progress);
+    let made = to_aligned_integer_map(
+        connectivity,
+        positions,
+        &start.map,
+        &aligned,
+        options,
+        &mut observe,
+    );
+    made.map_err(|cause| {
+        let file = mesh.path.clone();
+        match (cause, worker.stop.reason()) {
+            (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+            (cause, _) => Failure::NoIntegerMap { file, cause, advice },
+        }
+    })
 }
 
 fn advice(args: &IntegerArgs) -> &'static str {
@@ -96,13 +130,13 @@ fn advice(args: &IntegerArgs) -> &'static str {
     }
 }
 
-/// The seamless map in a file, which must be one of this mesh.
+/// The seamless map in a file, which must be one of this mesh, with the features that it aligns.
 fn read_map(
     args: &IntegerArgs,
     path: &Path,
     mesh: &LoadedMesh,
     connectivity: &TriMesh,
-) -> Result<SeamlessMap, Failure> {
+) -> Result<SeamlessStart, Failure> {
     let map = MapFile::read(path)?;
     let bad = |violations: Violations| Failure::BadMap {
         file: path.to_owned(),
@@ -114,19 +148,32 @@ fn read_map(
     if !differences.is_empty() {
         return Err(bad(Violations(differences)));
     }
-    SeamlessMap::certify(connectivity, map.corner_uvs, &args.options().tolerance).map_err(bad)
+    let map = SeamlessMap::certify(connectivity, map.corner_uvs, &args.options().tolerance)
+        .map_err(bad)?;
+    if !args.features.is_given() {
+        return Ok(SeamlessStart { map, features: None });
+    }
+    let FeatureArgs { features: sources, align_boundary } = &args.features;
+    let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
+    let asked = asked.aligned_in(&map, mesh, connectivity);
+    let features = AlignedFeatures::certify(connectivity, asked, &map, &[])
+        .map_err(|cause| Failure::Misaligned { file: path.to_owned(), cause })?;
+    Ok(SeamlessStart { map, features: Some(features) })
 }
 
 /// The seamless map to start from, by the direct method.
 pub(crate) fn make_seamless(
     cones: &ConeArgs,
+    features: &FeatureArgs,
     mesh: &LoadedMesh,
     connectivity: &TriMesh,
     worker: &mut Worker,
-) -> Result<SeamlessMap, Failure> {
+) -> Result<SeamlessStart, Failure> {
     let (positions, options) = (&mesh.soup.positions, cones.options());
-    let made =
-        make_map(connectivity, positions, &options, &mut |progress| worker.observe(progress));
+    let FeatureArgs { features: sources, align_boundary } = features;
+    let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
+    let mut observe = |progress| worker.observe(progress);
+    let made = make_aligned_map(connectivity, positions, &asked.edges, &options, &mut observe);
     let solution = made.map_err(|cause| {
         let file = mesh.path.clone();
         match (cause, worker.stop.reason()) {
@@ -134,7 +181,12 @@ pub(crate) fn make_seamless(
             (cause, _) => Failure::NoMap { file, cause },
         }
     })?;
-    Ok(solution.map)
+    let certify =
+        || AlignedFeatures::certify(connectivity, asked, &solution.map, &solution.released);
+    let features = features.is_given().then(certify).transpose();
+    let features =
+        features.map_err(|cause| Failure::Misaligned { file: mesh.path.clone(), cause })?;
+    Ok(SeamlessStart { map: solution.map, features })
 }
 
 /// Writes everything, puts it in place and prints the summary.
@@ -172,6 +224,8 @@ fn report_json(args: &IntegerArgs, plan: &Plan, product: &Product, cost: Cost) -
             "repair": args.repair,
             "cone_bias": args.method.cone_bias,
             "cone_price": args.method.cone_price,
+            "features": report::sources_json(&args.features),
+            "align_boundary": args.features.align_boundary,
             "tolerance": options.tolerance.seam,
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
             "threads": args.run.threads,
@@ -180,6 +234,7 @@ fn report_json(args: &IntegerArgs, plan: &Plan, product: &Product, cost: Cost) -
         "seamless_map": args.map.as_ref().map(|path| path.to_string_lossy()),
         "grid": grid_json(options.size, solution),
         "components": solution.components,
+        "features": product.features.as_ref().map(AlignedFeatures::json),
         "distortion_before": report::distortion_json(&solution.before),
         "integer_certificate": solution.map.certificate(),
         "files": plan.targets,
@@ -236,9 +291,27 @@ pub(crate) fn grid_text(requested: GridSize, solution: &IntegerSolution) -> Stri
     text
 }
 
+/// What is integral.
+pub(crate) fn integers_text(certificate: &IntegerCertificate) -> String {
+    let mut text = format!(
+        "exact across {}, at {}",
+        counted(certificate.exact_edges, "edge"),
+        counted(certificate.integral_cones, "cone")
+    );
+    if certificate.isoline_edges > 0 {
+        text += &format!(
+            ", {} and {}",
+            counted(certificate.integral_corners, "corner"),
+            counted(certificate.isoline_edges, "aligned edge")
+        );
+    }
+    text
+}
+
 fn summary_text(args: &IntegerArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
     let solution = &product.solution;
     let mut rows = summary::mesh_rows(&product.mesh);
+    rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     rows.push(row("grid", &grid_text(args.size.grid(), solution)));
     rows.extend(summary::map_rows(solution.map.seamless(), &solution.distortion));
     let before = &solution.before;
@@ -250,15 +323,8 @@ fn summary_text(args: &IntegerArgs, plan: &Plan, product: &Product, cost: &Cost)
             figure(before.symmetric_dirichlet)
         ),
     ));
-    let certificate = solution.map.certificate();
-    rows.push(row(
-        "integers",
-        &format!(
-            "exact across {}, at {}",
-            counted(certificate.exact_edges, "edge"),
-            counted(certificate.integral_cones, "cone")
-        ),
-    ));
+    rows.push(row("integers", &integers_text(solution.map.certificate())));
+    rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     let sum = |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
     let parts = [
         ("reduction", sum(|c| c.seconds_reduction)),

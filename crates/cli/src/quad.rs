@@ -2,8 +2,9 @@
 
 use crate::args::QuadArgs;
 use crate::extract::{quad_rows, quads_json, smoothed, tell_losses, write_quads};
+use crate::features::AlignedFeatures;
 use crate::input::LoadedMesh;
-use crate::integer::{grid_json, grid_text, make_seamless};
+use crate::integer::{grid_json, grid_text, integers_text, make_integer, make_seamless};
 use crate::job::{Job, Worker};
 use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
@@ -11,15 +12,18 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::summary;
 use crate::text::{self, row};
-use seamstress::{IntegerError, IntegerOptions, IntegerSolution, to_integer_map};
+use seamstress::{IntegerOptions, IntegerSolution};
 use seamstress_quads::{ExtractOptions, Extraction, QuadConnectivity, QuadFaults, extract};
 use serde_json::{Value, json};
 use std::io::Write;
+use std::path::Path;
 
 /// The work done, and nothing written yet.
 struct Product {
     mesh: LoadedMesh,
     integer: IntegerSolution,
+    /// The features that edges of quads follow, if any were asked for.
+    features: Option<AlignedFeatures>,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
     picture: Option<Vec<u8>>,
@@ -40,7 +44,9 @@ fn plan(args: &QuadArgs) -> Result<Plan, Failure> {
     targets.extend(args.picture.iter().map(|path| Target::new(Kind::Picture, path)));
     targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
     targets.push(Target::new(Kind::Quads, &args.output));
-    Plan::new(&[&args.mesh], None, targets)
+    let mesh: &Path = &args.mesh;
+    let inputs: Vec<&Path> = std::iter::once(mesh).chain(args.features.files()).collect();
+    Plan::new(&inputs, None, targets)
 }
 
 /// Seamless map, integer map, quads.
@@ -51,22 +57,11 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     }
     let source = mesh.connect()?;
     let positions = &mesh.soup.positions;
-    let map = make_seamless(&args.method, &mesh, &source, &mut worker)?;
+    let start = make_seamless(&args.method, &args.features, &mesh, &source, &mut worker)?;
 
     let options = IntegerOptions { size: args.size.grid(), ..IntegerOptions::default() };
-    let made = to_integer_map(&source, positions, &map, &options, &mut |progress| {
-        worker.observe(progress)
-    });
-    let integer = made.map_err(|cause| {
-        let file = mesh.path.clone();
-        match (cause, worker.stop.reason()) {
-            (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
-            (cause, _) => {
-                let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
-                Failure::NoIntegerMap { file, cause, advice }
-            }
-        }
-    })?;
+    let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
+    let integer = make_integer(&start, &options, advice, &mesh, &source, &mut worker)?;
     worker.stop.lift_limit();
 
     let no_quads = |text| Failure::NoQuads { file: mesh.path.clone(), text };
@@ -93,7 +88,7 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     let picture = picture
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, integer, extraction, connectivity, picture })
+    Ok(Product { mesh, integer, features: start.features, extraction, connectivity, picture })
 }
 
 /// Writes everything, puts it in place and prints the summary.
@@ -127,6 +122,8 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
             "size": args.size.grid(),
             "smooth": args.smooth,
             "repair": args.repair,
+            "features": report::sources_json(&args.features),
+            "align_boundary": args.features.align_boundary,
             "cone_bias": args.method.cone_bias,
             "cone_price": args.method.cone_price,
             "time_limit": args.run.time_limit.map(|limit| limit.as_secs_f64()),
@@ -136,6 +133,8 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "grid": grid_json(args.size.grid(), integer),
         "distortion": report::distortion_json(&integer.distortion),
         "integer_certificate": integer.map.certificate(),
+        "components": integer.components,
+        "features": product.features.as_ref().map(AlignedFeatures::json),
         "quads": quads_json(&product.extraction, &product.connectivity),
         "files": plan.targets,
         "cost": cost,
@@ -145,7 +144,12 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
 fn summary_text(args: &QuadArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
     let integer = &product.integer;
     let mut rows = summary::mesh_rows(&product.mesh);
+    rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
     rows.push(row("grid", &grid_text(args.size.grid(), integer)));
+    if product.features.is_some() {
+        rows.push(row("integers", &integers_text(integer.map.certificate())));
+    }
+    rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.extend(summary::distortion_rows(&integer.distortion));
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
     rows.push(summary::cost_row(cost, std::iter::empty()));

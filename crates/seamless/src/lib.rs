@@ -23,7 +23,7 @@ pub mod rounding;
 pub use features::{ReleaseReason, ReleasedFeature, Sectors};
 pub use integer::{
     GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
-    to_integer_map,
+    to_aligned_integer_map, to_integer_map,
 };
 pub use layout::anisotropy::{Anisotropy, Stretch};
 pub use layout::conic::Solver;

@@ -1,7 +1,7 @@
 //! Arguments of `integer`.
 
 use super::texture::positive;
-use super::{ConeArgs, EXIT_CODES, RunArgs, TextureArgs, not_negative};
+use super::{ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, TextureArgs, not_negative};
 use seamstress::{GridSize, IntegerOptions, IntegerRounding, Tolerance};
 use std::path::PathBuf;
 
@@ -10,6 +10,7 @@ Examples:
   seamstress integer bunny.ply --quads 5000 -o grid.obj
   seamstress integer bunny.ply bunny.obj --edge-length 0.02 -o grid.obj
   seamstress integer part.off --scale 4 -o grid.obj --pictures part
+  seamstress integer part.off --quads 3000 --features angle:40 --align-boundary -o grid.obj
   seamstress integer part.off --quads 800 -o grid.obj --json | jq .grid";
 
 /// Make an integer map: a seamless map whose unit squares close up over the surface
@@ -17,7 +18,8 @@ Examples:
 /// Rounds a seamless map so that the shifts across all seams and the positions of all cones are whole
 /// numbers, exactly, without flipping a triangle. The grid of unit squares is then a quad mesh of the
 /// surface. Where cones are too close for the grid, it is made finer, and the summary says so. Without a
-/// map the seamless map is made first, as `map` does.
+/// map the seamless map is made first, as `map` does. Features and boundaries that are aligned come to lie
+/// on lines of the grid; in a map that is given, those that it aligns.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{INTEGER_EXAMPLES}\n\n{EXIT_CODES}"))]
 pub(crate) struct IntegerArgs {
@@ -53,6 +55,9 @@ pub(crate) struct IntegerArgs {
 
     #[command(flatten)]
     pub(crate) texture: TextureArgs,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArgs,
 
     #[command(flatten)]
     pub(crate) method: ConeArgs,

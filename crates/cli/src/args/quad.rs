@@ -1,7 +1,7 @@
 //! Arguments of `quad`.
 
 use super::integer::SizeArgs;
-use super::{ConeArgs, EXIT_CODES, RunArgs};
+use super::{ConeArgs, EXIT_CODES, FeatureArgs, RunArgs};
 use clap::value_parser;
 use std::path::PathBuf;
 
@@ -9,13 +9,14 @@ const EXAMPLES: &str = "\
 Examples:
   seamstress quad bunny.ply --quads 5000 -o quads.obj
   seamstress quad bunny.ply --edge-length 0.02 -o quads.ply --picture quads.png
+  seamstress quad part.off --quads 3000 -o quads.obj --features angle:40 --align-boundary
   seamstress quad scan.stl --quads 800 -o quads.obj --repair --time-limit 60";
 
 /// Make a quad mesh of a triangle mesh
 ///
 /// A seamless map (as by `map`), rounded to an integer map (as by `integer`), whose grid is extracted (as by
-/// `extract`): quads only, an oriented manifold, its irregular vertices the cones of the map. Creases and
-/// boundaries are not followed; cells that the boundary cuts are left out.
+/// `extract`): quads only, an oriented manifold, its irregular vertices the cones of the map. Creases are
+/// followed with `--features`, boundaries with `--align-boundary`; cells that a boundary cuts are left out.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"))]
 pub(crate) struct QuadArgs {
@@ -44,6 +45,9 @@ pub(crate) struct QuadArgs {
     /// Repair the mesh first, as `map --repair` does
     #[arg(long)]
     pub(crate) repair: bool,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArgs,
 
     #[command(flatten)]
     pub(crate) method: ConeArgs,

@@ -47,3 +47,80 @@ fn exactly_one_size_is_needed_and_bad_meshes_are_refused() {
     folder.expect(1, &["quad", "open.obj", "-o", "q.obj", "--quads", "9"]);
     assert_eq!(folder.names(), ["cube.obj", "open.obj"]);
 }
+
+/// Lengths of the edges of quads that lie on segments, all together; each edge once.
+fn covered(obj: &str, segments: &[[[f64; 3]; 2]]) -> f64 {
+    let numbers = |line: &&str| -> [f64; 3] {
+        let mut numbers = line.split_whitespace().map(|x| x.parse().unwrap());
+        [(); 3].map(|()| numbers.next().unwrap())
+    };
+    let at: Vec<[f64; 3]> = lines_of(obj, "v").iter().map(numbers).collect();
+    let mut edges = std::collections::BTreeSet::new();
+    for line in lines_of(obj, "f") {
+        let ring: Vec<usize> =
+            line.split_whitespace().map(|x| x.parse::<usize>().unwrap() - 1).collect();
+        assert_eq!(ring.len(), 4);
+        for k in 0..4 {
+            let (a, b) = (ring[k], ring[(k + 1) % 4]);
+            edges.insert((a.min(b), a.max(b)));
+        }
+    }
+    let distance = |a: [f64; 3], b: [f64; 3]| {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+    };
+    let is_on = |p: [f64; 3], [a, b]: [[f64; 3]; 2]| {
+        (distance(a, p) + distance(p, b) - distance(a, b)).abs() < 1e-9
+    };
+    let on_one = |&&(a, b): &&(usize, usize)| {
+        segments.iter().any(|&segment| is_on(at[a], segment) && is_on(at[b], segment))
+    };
+    edges.iter().filter(on_one).map(|&(a, b)| distance(at[a], at[b])).sum()
+}
+
+#[test]
+fn quads_follow_the_edges_of_a_box() {
+    let folder = Folder::new();
+    let cuboid = kit::stretch(&kit::cube(), [1.0, 1.4, 2.3]);
+    folder.write_obj("box.obj", &kit::subdivide(&kit::subdivide(&cuboid)));
+    let sizes: Vec<(f64, f64)> = (0..3)
+        .map(|k| {
+            let along = || cuboid.positions.iter().map(|p| p[k]);
+            (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max))
+        })
+        .collect();
+    let corner =
+        |c: usize| [0, 1, 2].map(|k| if c >> k & 1 == 0 { sizes[k].0 } else { sizes[k].1 });
+    let segments: Vec<[[f64; 3]; 2]> = (0..8usize)
+        .flat_map(|c| (0..3).filter(move |k| c >> k & 1 == 0).map(move |k| [c, c | 1 << k]))
+        .map(|ends| ends.map(corner))
+        .collect();
+    let total: f64 = 4.0 * sizes.iter().map(|(low, high)| high - low).sum::<f64>();
+    for quads in ["60", "700"] {
+        let arguments = ["quad", "box.obj", "--quads", quads, "-o", "q.obj", "--json"];
+        let report =
+            json(&folder.expect(0, &[&arguments[..], &["--features", "angle:40"]].concat()).stdout);
+        assert_eq!(report["quads"]["irregular"]["by_valence"]["3"], 8);
+        assert_eq!(report["integer_certificate"]["isoline_edges"], 48);
+        let found = covered(&folder.read("q.obj"), &segments);
+        assert!((found - total).abs() < 1e-6, "{found} of {total} at {quads}");
+    }
+}
+
+#[test]
+fn quads_reach_an_aligned_boundary() {
+    let folder = Folder::new();
+    folder.write_obj("square.obj", &kit::disk_grid(5, 5));
+    let arguments = ["quad", "square.obj", "--quads", "90", "-o", "q.obj", "--json"];
+    let report = json(&folder.expect(0, &[&arguments[..], &["--align-boundary"]].concat()).stdout);
+    assert_eq!(report["quads"]["trimmed"], 0, "{}", report["quads"]);
+    let rim = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| [x, y, 0.0]);
+    let segments: Vec<[[f64; 3]; 2]> = (0..4).map(|k| [rim[k], rim[(k + 1) % 4]]).collect();
+    let found = covered(&folder.read("q.obj"), &segments);
+    assert!((found - 8.0).abs() < 1e-9, "{found}");
+    // The same through an aligned map in a file.
+    folder.expect(0, &["map", "square.obj", "--align-boundary", "-o", "m.obj"]);
+    let arguments = ["integer", "square.obj", "m.obj", "--quads", "90", "-o", "i.obj", "--json"];
+    let report = json(&folder.expect(0, &[&arguments[..], &["--align-boundary"]].concat()).stdout);
+    assert_eq!(report["integer_certificate"]["isoline_edges"], 20);
+    assert_eq!(report["integer_certificate"]["integral_corners"], 4);
+}

@@ -1,8 +1,10 @@
 //! The certificate of an integer map.
 
-use crate::map::{SeamlessMap, Tolerance, Violation, Violations};
+use super::isolines::turning_points;
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 use crate::quarter::turn;
 use num_complex::Complex64;
+use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Halfedge, TriMesh, Vertex};
 use std::f64::consts::FRAC_PI_2;
 
@@ -14,6 +16,10 @@ pub struct IntegerCertificate {
     pub exact_edges: usize,
     /// Cones, all of them at grid points in every face around them.
     pub integral_cones: usize,
+    /// Aligned edges, both ends of all of them at the same integer on either side.
+    pub isoline_edges: usize,
+    /// Vertices without a cone at which aligned edges turn, all of them at grid points.
+    pub integral_corners: usize,
     /// The largest coordinate of a translation.
     pub largest_translation: f64,
     /// Area in the plane, grid units: the number of quads of a closed mesh.
@@ -45,7 +51,25 @@ impl IntegerMap {
         corner_uvs: Vec<[f64; 2]>,
         tolerance: &Tolerance,
     ) -> Result<Self, Violations> {
+        Self::certify_aligned(mesh, corner_uvs, &[], tolerance)
+    }
+
+    /// Checks a map, in grid units, whose isolines at integers hold edges given by their end vertices.
+    ///
+    /// Beyond everything [`IntegerMap::certify`] checks, on either side of each such edge both ends have the
+    /// same integer as one coordinate, and where these edges turn they are at a grid point. The grid's quads
+    /// then have these edges along theirs.
+    ///
+    /// # Errors
+    /// As [`IntegerMap::certify`], and those of [`Alignment::certify`].
+    pub fn certify_aligned(
+        mesh: &TriMesh,
+        corner_uvs: Vec<[f64; 2]>,
+        aligned: &[[u32; 2]],
+        tolerance: &Tolerance,
+    ) -> Result<Self, Violations> {
         let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
+        Alignment::certify(mesh, &map, aligned, &AlignmentTolerance::default())?;
         let check = Check { mesh, uvs: map.corner_uvs() };
         let mut violations = Vec::new();
         let mut largest = 0.0f64;
@@ -58,12 +82,25 @@ impl IntegerMap {
         for cone in map.cones() {
             violations.extend(check.cone(Vertex(cone.vertex)));
         }
+        let ends = aligned.iter().filter_map(|&[a, b]| mesh.edge_between(Vertex(a), Vertex(b)));
+        let aligned = EdgeSet::new(mesh, ends);
+        for &edge in aligned.edges() {
+            violations.extend(check.isoline(edge));
+        }
+        let mut is_corner = turning_points(mesh, &aligned, |h| check.at(h));
+        map.cones().iter().for_each(|cone| is_corner[Vertex(cone.vertex)] = false);
+        let corners: Vec<Vertex> = mesh.vertices().filter(|&v| is_corner[v]).collect();
+        for &corner in &corners {
+            violations.extend(check.corner(corner));
+        }
         if !violations.is_empty() {
             return Err(Violations(violations));
         }
         let certificate = IntegerCertificate {
             exact_edges: mesh.interior_edges().count(),
             integral_cones: map.cones().len(),
+            isoline_edges: aligned.len(),
+            integral_corners: corners.len(),
             largest_translation: largest,
             area: check.area(),
         };
@@ -119,9 +156,27 @@ impl Check<'_> {
     }
 
     fn cone(&self, v: Vertex) -> Option<Violation> {
-        let corners = self.mesh.outgoing(v).map(|h| self.uvs[h.at()]);
-        let fractional = corners.into_iter().find(|&uv| !is_integral(uv));
-        fractional.map(|uv| Violation::FractionalCone { vertex: v.0, uv })
+        self.fractional(v).map(|uv| Violation::FractionalCone { vertex: v.0, uv })
+    }
+
+    fn corner(&self, v: Vertex) -> Option<Violation> {
+        self.fractional(v).map(|uv| Violation::FractionalCorner { vertex: v.0, uv })
+    }
+
+    /// A place of a vertex that is no grid point.
+    fn fractional(&self, v: Vertex) -> Option<[f64; 2]> {
+        self.mesh.outgoing(v).map(|h| self.uvs[h.at()]).find(|&uv| !is_integral(uv))
+    }
+
+    /// An aligned edge that on one of its sides does not lie on an isoline at an integer.
+    fn isoline(&self, edge: Halfedge) -> Option<Violation> {
+        let is_off = |side: &Halfedge| {
+            let [a, b] = [*side, side.next()].map(|corner| self.uvs[corner.at()]);
+            !(0..2).any(|k| a[k] == b[k] && a[k].fract() == 0.0)
+        };
+        let side = std::iter::once(edge).chain(self.mesh.twin(edge)).find(is_off)?;
+        let vertices = [self.mesh.origin(edge).0, self.mesh.tip(edge).0];
+        Some(Violation::OffIsoline { vertices, face: side.face().0 })
     }
 
     fn area(&self) -> f64 {

@@ -2,12 +2,15 @@
 
 use super::barrier::advance;
 use super::certificate::IntegerMap;
-use super::connections::{Connection, cone_triangles, connections};
+use super::connections::{connections, grid_triangles};
 use super::gauss::{Gauss, Overflow};
+use super::isolines::turning_points;
+use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{Constraint, Rounded, RoundingProblem, round_constrained, round_greedily};
+use super::rounding::{Constraint, RoundingProblem, round_constrained, round_greedily};
+use super::scene::{Connection, Scene, distinct};
 use super::snap::snap;
-use super::space::IntegerSpace;
+use super::space::{GridNeeds, IntegerSpace};
 use super::{IntegerOptions, IntegerRounding};
 use crate::cut::Cut;
 use crate::layout::energy::SymmetricDirichlet;
@@ -19,7 +22,8 @@ use crate::map::{SeamlessMap, Violations};
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 use seamstress_numerics::NotPositiveDefinite;
-use seamstress_surface::{HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_surface::features::EdgeSet;
+use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use std::time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
@@ -47,8 +51,8 @@ pub enum IntegerFailure {
     /// The given map flips when its seams are closed exactly.
     #[error("the map has triangles too thin to close its seams exactly")]
     Unreadable,
-    /// Straight connections of cones would vanish.
-    #[error("{violated} straight lines between cones would vanish or turn around")]
+    /// Straight connections of cones, or ways between isolines, would vanish.
+    #[error("{violated} straight lines between cones or isolines would vanish or turn around")]
     Conflict {
         /// How many.
         violated: usize,
@@ -79,7 +83,7 @@ pub struct IntegerStats {
     pub faces: usize,
     /// Real integer unknowns.
     pub integers: usize,
-    /// Straight connections of cones that were constrained.
+    /// Straight connections of cones, and ways to isolines, that were constrained.
     pub constraints: usize,
     /// Times the rounding started over with other priorities.
     pub restarts: usize,
@@ -120,17 +124,19 @@ pub(super) struct IntegerProblem<'a> {
     options: &'a IntegerOptions,
     cut: Cut,
     matching: HalfedgeData<i32>,
-    is_cone: VertexData<bool>,
+    /// The ends of the aligned edges.
+    aligned: Vec<[u32; 2]>,
+    needs: GridNeeds,
     space: IntegerSpace,
     problem: LayoutProblem,
     /// The unknowns of the seamless map, in mean edge lengths.
     y: Vec<f64>,
     /// Its integral coordinates, not integral as yet.
-    zeta: Vec<f64>,
+    coordinates: Vec<f64>,
     matrix: Dense,
-    /// Connections up to a radius.
+    /// Connections and ways to isolines up to a radius.
     near: (f64, Vec<Connection>),
-    /// Two sides of every triangle whose corners are all cones.
+    /// Two sides of every triangle whose corners are all grid points.
     triangles: Vec<[Connection; 2]>,
     /// Mesh length of a mean edge.
     unit: f64,
@@ -138,7 +144,8 @@ pub(super) struct IntegerProblem<'a> {
 }
 
 impl<'a> IntegerProblem<'a> {
-    /// Reads a seamless map of a connected mesh, and reduces the energy around it to the integers.
+    /// Reads a seamless map of a connected mesh with its aligned edges, and reduces the energy around it to
+    /// the integers.
     ///
     /// # Errors
     /// [`IntegerFailure`].
@@ -146,6 +153,7 @@ impl<'a> IntegerProblem<'a> {
         mesh: &'a TriMesh,
         metric: &Metric,
         map: &SeamlessMap,
+        aligned: &EdgeSet,
         options: &'a IntegerOptions,
     ) -> Result<Self, IntegerFailure> {
         let start = Instant::now();
@@ -154,12 +162,11 @@ impl<'a> IntegerProblem<'a> {
         let z = layout.expand(&y);
         let is_cone: VertexData<bool> = layout.index.iter().map(|&k| k != 0).collect();
         let ExactLayout { cut, matching, .. } = layout;
-        let space = IntegerSpace::new(mesh, &cut, &matching, &is_cone)?;
-        let (zeta, x) = space.read(&z);
-        let y = flat(x.iter().chain(&space.variables(&zeta)));
-        let held = 2 * space.n_ordinary();
-        let mut problem =
-            LayoutProblem::with_held(space.linear(), triangles(mesh, metric, &cut), held)?;
+        let needs = grid_needs(mesh, is_cone, aligned, |h| z[cut.wedge[h] as usize]);
+        let space = IntegerSpace::new(mesh, &cut, &matching, &needs)?;
+        let (coordinates, y) = space.read(&z);
+        let (linear, shapes) = (space.linear()?, triangles(mesh, metric, &cut));
+        let mut problem = LayoutProblem::with_held(linear, shapes, space.n_free())?;
         let z = problem.space().expand(&y);
         if !problem.value(&SymmetricDirichlet, &z).is_finite() {
             return Err(IntegerFailure::Unreadable);
@@ -171,10 +178,11 @@ impl<'a> IntegerProblem<'a> {
             IntegerRounding::Greedy => problem.assemble_dirichlet(),
         }
         problem.factorize(SHIFT)?;
-        let matrix = normalized(schur_complement(&problem, space.lattice())?);
-        let zeta = flat(&zeta);
+        let matrix = normalized(schur_complement(&problem, &space)?);
         let seconds = start.elapsed().as_secs_f64();
-        let triangles = cone_triangles(mesh, &cut, &is_cone, &space, &z)?;
+        let scene =
+            Scene { mesh, cut: &cut, matching: &matching, needs: &needs, space: &space, z: &z };
+        let triangles = grid_triangles(&scene)?;
         let near = (0.0, Vec::new());
         let unit = metric.unit;
         Ok(Self {
@@ -182,11 +190,12 @@ impl<'a> IntegerProblem<'a> {
             options,
             cut,
             matching,
-            is_cone,
+            aligned: aligned.vertex_pairs(mesh),
+            needs,
             space,
             problem,
             y,
-            zeta,
+            coordinates,
             matrix,
             near,
             triangles,
@@ -215,7 +224,7 @@ impl<'a> IntegerProblem<'a> {
     ) -> Result<Placed, IntegerFailure> {
         let mut stats = IntegerStats {
             faces: self.mesh.n_faces(),
-            integers: self.zeta.len(),
+            integers: self.coordinates.len(),
             seconds_reduction: self.seconds,
             ..Default::default()
         };
@@ -250,18 +259,18 @@ impl<'a> IntegerProblem<'a> {
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
-        let (variables, y) = match self.options.rounding {
+        let (held, y) = match self.options.rounding {
             IntegerRounding::Constrained => self.round_and_move(h, stats, watch)?,
             IntegerRounding::Greedy => {
                 let rounding = self.rounding_problem(h)?;
-                let variables = self.integers(&round_greedily(&rounding)?)?;
-                let y = self.follow(&in_layout(&variables, h));
-                (variables, y)
+                let held = self.space.expand(&round_greedily(&rounding)?.x)?;
+                let y = self.follow(&in_layout(&held, h));
+                (held, y)
             }
         };
-        let (corner_uvs, columns) = self.corner_uvs(&variables, &y, h, column)?;
+        let (corner_uvs, columns) = self.corner_uvs(&held, &y, h, column)?;
         let tolerance = &self.options.tolerance;
-        let map = IntegerMap::certify(self.mesh, corner_uvs, tolerance)?;
+        let map = IntegerMap::certify_aligned(self.mesh, corner_uvs, &self.aligned, tolerance)?;
         stats.quads = map.certificate().area;
         Ok((map.corner_uvs().to_vec(), columns))
     }
@@ -272,12 +281,12 @@ impl<'a> IntegerProblem<'a> {
         h: f64,
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<(Vec<Gauss>, Vec<f64>), IntegerFailure> {
+    ) -> Result<(Vec<i64>, Vec<f64>), IntegerFailure> {
         watch.tick(0.1)?;
         let clock = Instant::now();
         let rounding = self.rounding_problem(h)?;
         let rounded = round_constrained(&rounding)?;
-        let variables = self.integers(&rounded)?;
+        let held = self.space.expand(&rounded.x)?;
         stats.constraints = rounding.constraints.len();
         stats.restarts += rounded.restarts;
         stats.seconds_rounding += clock.elapsed().as_secs_f64();
@@ -286,7 +295,7 @@ impl<'a> IntegerProblem<'a> {
         }
         watch.tick(0.4)?;
         let clock = Instant::now();
-        let target = in_layout(&variables, h);
+        let target = in_layout(&held, h);
         let advance = advance(&mut self.problem, self.y.clone(), &target, watch)?;
         stats.seconds_moving += clock.elapsed().as_secs_f64();
         stats.moves = advance.moves;
@@ -298,11 +307,18 @@ impl<'a> IntegerProblem<'a> {
         let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
         stats.seconds_polish += clock.elapsed().as_secs_f64();
         stats.polish = polished.iterations;
-        Ok((variables, polished.y))
+        Ok((held, polished.y))
     }
 
     fn connections(&self, z: &[Complex64], radius: f64) -> Result<Vec<Connection>, Overflow> {
-        connections(self.mesh, &self.cut, &self.matching, &self.is_cone, &self.space, z, radius)
+        let (mesh, cut, matching) = (self.mesh, &self.cut, &self.matching);
+        let scene = Scene { mesh, cut, matching, needs: &self.needs, space: &self.space, z };
+        let mut all = connections(&scene, radius)?;
+        if !self.aligned.is_empty() {
+            all.extend(ways_to_isolines(&scene, radius)?);
+            all = distinct(all);
+        }
+        Ok(all)
     }
 
     fn rounding_problem(&mut self, h: f64) -> Result<RoundingProblem, Overflow> {
@@ -311,22 +327,16 @@ impl<'a> IntegerProblem<'a> {
             let z = self.problem.space().expand(&self.y);
             self.near = (radius, self.connections(&z, radius)?);
         }
-        let mean: Vec<f64> = self.zeta.iter().map(|x| x / h).collect();
+        let mean: Vec<f64> = self.coordinates.iter().map(|x| x / h).collect();
         let short = self.near.1.iter().filter(|c| c.length < radius);
         let mut constraints: Vec<Constraint> =
-            short.map(|c| Constraint::new(c, &self.zeta, h)).collect();
+            short.map(|c| Constraint::new(c, &self.coordinates, h)).collect();
         let first = constraints.len();
         constraints.extend(
-            self.triangles.as_flattened().iter().map(|c| Constraint::new(c, &self.zeta, h)),
+            self.triangles.as_flattened().iter().map(|c| Constraint::new(c, &self.coordinates, h)),
         );
         let triangles = (first..constraints.len()).step_by(2).map(|k| [k, k + 1]).collect();
         Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints, triangles })
-    }
-
-    fn integers(&self, rounded: &Rounded) -> Result<Vec<Gauss>, Overflow> {
-        let zeta: Vec<Gauss> =
-            rounded.x.chunks(2).map(|pair| Gauss { re: pair[0], im: pair[1] }).collect();
-        self.space.lattice().expand(&zeta)
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
@@ -345,15 +355,12 @@ impl<'a> IntegerProblem<'a> {
     /// Exact corner UVs in grid units, their box beginning at a column and at row 0, and its width.
     fn corner_uvs(
         &self,
-        variables: &[Gauss],
+        held: &[i64],
         y: &[f64],
         h: f64,
         column: i64,
     ) -> Result<(Vec<[f64; 2]>, i64), Overflow> {
-        let x: Vec<Complex64> = y[..self.problem.n_free()]
-            .chunks(2)
-            .map(|pair| Complex64::new(pair[0], pair[1]) / h)
-            .collect();
+        let free: Vec<f64> = y[..self.problem.n_free()].iter().map(|x| x / h).collect();
         let z = self.problem.space().expand(y);
         let bound = |start: f64, pick: fn(f64, f64) -> f64, part: fn(&Complex64) -> f64| {
             z.iter().map(part).fold(start, pick) / h
@@ -363,15 +370,42 @@ impl<'a> IntegerProblem<'a> {
             [re, im].map(|part| bound(f64::INFINITY, f64::min, part).floor() as i64);
         let right = bound(f64::NEG_INFINITY, f64::max, re).ceil() as i64;
         let shift = Gauss { re: column, im: 0 }.plus(Gauss { re: left, im: bottom }.negated())?;
-        let z = snap(&self.space, variables, &x, shift)?;
+        let z = snap(&self.space, held, &free, shift)?;
         let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
         Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
     }
 }
 
-/// Integral variables in the units of the layout, real and imaginary parts by turns.
-fn in_layout(variables: &[Gauss], h: f64) -> Vec<f64> {
-    flat(&variables.iter().map(|x| x.to_complex() * h).collect::<Vec<_>>())
+/// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.
+fn grid_needs(
+    mesh: &TriMesh,
+    is_cone: VertexData<bool>,
+    aligned: &EdgeSet,
+    position: impl Fn(Halfedge) -> Complex64,
+) -> GridNeeds {
+    let mut needs = GridNeeds::cones(is_cone);
+    if aligned.is_empty() {
+        return needs;
+    }
+    let turns = turning_points(mesh, aligned, &position);
+    mesh.vertices().filter(|&v| turns[v]).for_each(|v| needs.is_point[v] = true);
+    if !needs.is_point.iter().any(|&is_point| is_point) {
+        // Translations are then free along the isolines: hold a vertex on one of them.
+        aligned.edges().iter().take(1).for_each(|&h| needs.is_point[mesh.origin(h)] = true);
+    }
+    let sides = mesh.halfedges().filter(|&h| aligned.contains(h));
+    needs.levels = sides
+        .map(|h| {
+            let way = position(h.next()) - position(h);
+            (h, u32::from(way.re.abs() > way.im.abs()))
+        })
+        .collect();
+    needs
+}
+
+/// Integers in the units of the layout.
+fn in_layout(held: &[i64], h: f64) -> Vec<f64> {
+    held.iter().map(|&x| x as f64 * h).collect()
 }
 
 /// Scaled to a mean diagonal of one.
@@ -383,9 +417,4 @@ fn normalized(mut matrix: Dense) -> Dense {
         matrix.values.iter_mut().for_each(|x| *x *= scale);
     }
     matrix
-}
-
-/// Real and imaginary parts by turns.
-fn flat<'z>(z: impl IntoIterator<Item = &'z Complex64>) -> Vec<f64> {
-    z.into_iter().flat_map(|z| [z.re, z.im]).collect()
 }

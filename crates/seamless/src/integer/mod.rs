@@ -2,11 +2,11 @@
 //!
 //! [`to_integer_map`] rounds a certified seamless map, with these steps per component:
 //!
-//! 1. [`space`]: what must be integral, the translations of chains and the cones, as exact functions of
-//!    free coordinates over the Gaussian integers ([`lattice`]);
+//! 1. [`space`]: what must be integral, the translations of chains, the cones, and of aligned edges their
+//!    corners and [`isolines`], as exact functions of free integer coordinates ([`lattice`]);
 //! 2. [`reduced`]: the energy as a quadratic function of those coordinates alone;
-//! 3. [`connections`], [`rounding`], [`search`]: the nearest integer point in that energy at which no
-//!    straight line between cones collapses;
+//! 3. [`connections`], [`rays`], [`rounding`], [`search`]: the nearest integer point in that energy at
+//!    which no straight line between cones or isolines collapses;
 //! 4. [`barrier`]: the layout moves there without a flip;
 //! 5. [`snap`]: doubles that fit to the last bit;
 //! 6. [`IntegerMap::certify`], the only door to an integer map.
@@ -17,19 +17,23 @@ mod component;
 pub mod conditional;
 pub mod connections;
 pub mod gauss;
+pub mod isolines;
 pub mod lattice;
+pub mod rays;
 pub mod reduced;
 pub mod rounding;
+pub mod scene;
 pub mod search;
 pub mod snap;
 mod solve;
 pub mod space;
+mod walk;
 
 use crate::map::Tolerance;
 
 pub use certificate::{IntegerCertificate, IntegerMap};
 pub use component::{IntegerFailure, IntegerStats};
-pub use solve::{IntegerError, IntegerSolution, to_integer_map};
+pub use solve::{IntegerError, IntegerSolution, to_aligned_integer_map, to_integer_map};
 
 /// How fine the grid is to be.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

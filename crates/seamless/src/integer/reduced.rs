@@ -1,6 +1,6 @@
 //! The energy as a function of the integral coordinates alone.
 
-use super::lattice::Lattice;
+use super::space::IntegerSpace;
 use crate::layout::problem::LayoutProblem;
 use rayon::prelude::*;
 use seamstress_numerics::NotPositiveDefinite;
@@ -60,19 +60,18 @@ pub fn couple(problem: &LayoutProblem, d: &[f64]) -> Vec<f64> {
 }
 
 /// The Schur complement `P = B' (H_XX - H_Xx H_xx^-1 H_xX) B` of the last assembled and factored matrix,
-/// in the real and imaginary parts of the coordinates by turns: to second order, half of
-/// `d' P d` is what moving the coordinates by `d` costs when everything else follows.
+/// with the held unknowns `X = B xi`: to second order, half of `d' P d` is what moving the coordinates xi by
+/// `d` costs when everything else follows.
 ///
 /// # Errors
 /// When there is no memory for the solves.
 pub fn schur_complement(
     problem: &LayoutProblem,
-    lattice: &Lattice,
+    space: &IntegerSpace,
 ) -> Result<Dense, NotPositiveDefinite> {
     let n_free = problem.n_free();
-    let order = 2 * lattice.rank();
-    let n_held = 2 * lattice.n_variables();
-    let columns = real_columns(lattice);
+    let (order, n_held) = (space.n_coordinates(), space.n_held());
+    let columns = columns(space);
     let (cross, held): (Vec<_>, Vec<_>) =
         couplings(problem).partition(|(_, column, _)| *column < n_free);
     let chunks: Vec<&[SparseColumn]> = columns.chunks(COLUMNS).collect();
@@ -116,26 +115,14 @@ pub fn schur_complement(
     Ok(Dense { order, values })
 }
 
-/// Entries of a column of B in real numbers: held unknown and coefficient.
+/// Entries of a column of B: held unknown and coefficient.
 type SparseColumn = Vec<(usize, f64)>;
 
-/// B in real numbers, column by column.
-fn real_columns(lattice: &Lattice) -> Vec<SparseColumn> {
-    let mut columns = vec![SparseColumn::new(); 2 * lattice.rank()];
-    for v in 0..lattice.n_variables() {
-        for (&k, c) in lattice.row(v) {
-            let c = c.to_complex();
-            let k = 2 * k as usize;
-            let mut add = |column: usize, row: usize, x: f64| {
-                if x != 0.0 {
-                    columns[column].push((row, x));
-                }
-            };
-            add(k, 2 * v, c.re);
-            add(k, 2 * v + 1, c.im);
-            add(k + 1, 2 * v, -c.im);
-            add(k + 1, 2 * v + 1, c.re);
-        }
+/// B column by column.
+fn columns(space: &IntegerSpace) -> Vec<SparseColumn> {
+    let mut columns = vec![SparseColumn::new(); space.n_coordinates()];
+    for (k, row) in space.held().iter().enumerate() {
+        row.iter().for_each(|&(column, c)| columns[column].push((k, c as f64)));
     }
     columns
 }

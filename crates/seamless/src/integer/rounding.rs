@@ -1,12 +1,12 @@
 //! Choosing the integers: a closest vector problem in which no connection of cones may collapse.
 
 use super::conditional::{Conditional, Effect, Row, apply, energy};
-use super::connections::Connection;
 use super::reduced::Dense;
+use super::scene::Connection;
 use super::search::improve;
 use seamstress_numerics::NotPositiveDefinite;
 
-/// A straight connection of two cones as the rounding sees it: it may neither vanish nor turn around.
+/// A connection as the rounding sees it: it may neither vanish nor turn around.
 #[derive(Debug, Clone)]
 pub struct Constraint {
     /// Real and imaginary part of the displacement.
@@ -21,19 +21,7 @@ impl Constraint {
     /// From a connection, for coordinates `from` of the layout where it was found and grid size `h`, both
     /// in the layout's units.
     pub fn new(connection: &Connection, from: &[f64], h: f64) -> Self {
-        let mut rows = [Row::new(), Row::new()];
-        for (&k, &c) in &connection.displacement {
-            let k = 2 * k as usize;
-            let [re, im] = &mut rows;
-            for (row, column, x) in
-                [(0, k, c.re), (0, k + 1, -c.im), (1, k, c.im), (1, k + 1, c.re)]
-            {
-                if x != 0 {
-                    let row = if row == 0 { &mut *re } else { &mut *im };
-                    row.push((column, x));
-                }
-            }
-        }
+        let rows = connection.rows.clone();
         let start = [apply(&rows[0], from) / h, apply(&rows[1], from) / h];
         Self { rows, start, length: connection.length / h }
     }
@@ -59,7 +47,7 @@ impl Constraint {
 pub struct RoundingProblem {
     /// The matrix P.
     pub matrix: Dense,
-    /// The coordinates of the seamless map in grid units, real and imaginary parts by turns.
+    /// The coordinates of the seamless map in grid units.
     pub mean: Vec<f64>,
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
@@ -75,7 +63,7 @@ pub fn is_left_turn(a: [f64; 2], b: [f64; 2]) -> bool {
 /// Integers for the coordinates.
 #[derive(Debug, Clone)]
 pub struct Rounded {
-    /// Real and imaginary parts by turns.
+    /// One per coordinate.
     pub x: Vec<i64>,
     /// Connections that collapse or turn around.
     pub violated: usize,
@@ -334,7 +322,6 @@ impl<'a> Fixing<'a> {
 mod tests {
     use super::*;
     use crate::integer::conditional::energy;
-    use crate::integer::gauss::Gauss;
 
     /// A positive definite matrix and a mean of two Gaussian integers, from a seed.
     fn problem(seed: u64) -> RoundingProblem {
@@ -346,11 +333,12 @@ mod tests {
         };
         let values = (0..16).map(|k| entry(k / 4, k % 4)).collect();
         let mean: Vec<f64> = (0..4).map(|_| 3.0 * (rng.unit() - 0.5)).collect();
-        let connection = |displacement: &[(u32, i64, i64)]| Connection {
+        let connection = |re: &[(usize, i64)], im: &[(usize, i64)]| Connection {
             length: 0.5,
-            displacement: displacement.iter().map(|&(k, re, im)| (k, Gauss { re, im })).collect(),
+            rows: [re.to_vec(), im.to_vec()],
         };
-        let connections = [connection(&[(0, 1, 0)]), connection(&[(0, 1, 0), (1, 0, -1)])];
+        let sum = connection(&[(0, 1), (3, 1)], &[(1, 1), (2, -1)]);
+        let connections = [connection(&[(0, 1)], &[(1, 1)]), sum];
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
         RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints, triangles: vec![] }
     }
@@ -392,7 +380,10 @@ mod tests {
             let mut problem = problem(seed);
             // the sides of a thin triangle, which would both round to 1
             problem.mean = vec![0.6, 0.0, 0.6, 0.3];
-            let side = |k| Connection { length: 0.6, displacement: [(k, Gauss::ONE)].into() };
+            let side = |k: usize| Connection {
+                length: 0.6,
+                rows: [vec![(2 * k, 1)], vec![(2 * k + 1, 1)]],
+            };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
             problem.triangles = vec![[0, 1]];

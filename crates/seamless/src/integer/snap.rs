@@ -8,23 +8,26 @@ use num_complex::Complex64;
 /// Bits of a double's mantissa.
 const MANTISSA: i32 = 53;
 
-/// Wedge positions in grid units for integral variables X and the positions `x` of the ordinary vertices,
-/// all shifted by an integer.
+/// Wedge positions in grid units for the held unknowns, which are integers, and the free ones, all shifted
+/// by an integer.
 ///
 /// A vertex on a seam has several wedges, at `i^k x` plus integers. Its position is rounded to a multiple
 /// of a power of two that is representable at all of them, so that quarter turns and integer
-/// translations between them are exact in floating point. Other vertices keep all their digits.
+/// translations between them are exact in floating point. Other vertices keep all their digits. Levels of
+/// isolines are integers, and stay.
 ///
 /// # Errors
 /// [`Overflow`].
 pub fn snap(
     space: &IntegerSpace,
-    variables: &[Gauss],
-    x: &[Complex64],
+    held: &[i64],
+    free: &[f64],
     shift: Gauss,
 ) -> Result<Vec<Complex64>, Overflow> {
+    let levels: Vec<f64> = held.iter().map(|&k| k as f64).collect();
+    let x = space.positions(free, &levels);
     let fixed: Vec<Complex64> = (0..space.n_wedges() as u32)
-        .map(|w| Ok(value(space.form(w), variables)?.plus(shift)?.to_complex()))
+        .map(|w| Ok(value(space.form(w), held)?.plus(shift)?.to_complex()))
         .collect::<Result<_, Overflow>>()?;
     let mut copies = vec![0u32; x.len()];
     let mut reach = vec![0.0f64; x.len()];
@@ -46,9 +49,10 @@ pub fn snap(
     Ok(fixed.iter().enumerate().map(place).collect())
 }
 
-/// The value of a form at integral variables.
-fn value(form: &Form, variables: &[Gauss]) -> Result<Gauss, Overflow> {
-    form.iter().try_fold(Gauss::ZERO, |sum, (&v, &c)| sum.plus(c.times(variables[v as usize])?))
+/// The value of a form in X at integers.
+fn value(form: &Form, held: &[i64]) -> Result<Gauss, Overflow> {
+    let variable = |v: u32| Gauss { re: held[2 * v as usize], im: held[2 * v as usize + 1] };
+    form.iter().try_fold(Gauss::ZERO, |sum, (&v, &c)| sum.plus(c.times(variable(v))?))
 }
 
 /// A power of two whose multiples up to twice `reach` are all doubles.

@@ -3,10 +3,11 @@
 use super::certificate::IntegerMap;
 use super::component::{IntegerFailure, IntegerProblem, IntegerStats, Placed};
 use super::{GridSize, IntegerOptions};
-use crate::map::{SeamlessMap, Violations};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
-use seamstress_surface::{Component, Face, Metric, TriMesh, components};
+use seamstress_surface::features::EdgeSet;
+use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, components};
 
 /// The number of quads asked for is met when it is this close.
 const CLOSE_ENOUGH: f64 = 0.02;
@@ -78,6 +79,9 @@ pub enum IntegerError {
         #[source]
         cause: IntegerFailure,
     },
+    /// The edges given are not aligned in the map.
+    #[error("the map is not aligned: {0}")]
+    Misaligned(#[source] Violations),
     /// The result did not pass the certificate. Nothing is returned then.
     #[error("the integer map failed its certificate: {0}")]
     Uncertified(#[from] Violations),
@@ -102,6 +106,24 @@ pub fn to_integer_map(
     options: &IntegerOptions,
     observer: &mut Observer<'_>,
 ) -> Result<IntegerSolution, IntegerError> {
+    to_aligned_integer_map(mesh, positions, map, &EdgeSet::new(mesh, []), options, observer)
+}
+
+/// Makes an integer map that is close to a seamless map whose aligned edges it takes to isolines at
+/// integers, so that the quads of its grid follow them.
+///
+/// Otherwise as [`to_integer_map`].
+///
+/// # Errors
+/// [`IntegerError`], also when an edge is not aligned in the map; never an uncertified map.
+pub fn to_aligned_integer_map(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    map: &SeamlessMap,
+    aligned: &EdgeSet,
+    options: &IntegerOptions,
+    observer: &mut Observer<'_>,
+) -> Result<IntegerSolution, IntegerError> {
     let (corners, vertices, faces) = (map.corner_uvs().len(), mesh.n_vertices(), mesh.n_faces());
     if positions.len() != vertices || corners != 3 * faces {
         let positions = positions.len();
@@ -111,10 +133,13 @@ pub fn to_integer_map(
     if !(size.is_finite() && size > 0.0) {
         return Err(IntegerError::BadSize);
     }
+    let pairs = aligned.vertex_pairs(mesh);
+    Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default())
+        .map_err(IntegerError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut run = Run { pieces: &pieces, problems: Vec::new(), observer };
     for k in 0..pieces.len() {
-        run.prepare(k, positions, map, options)?;
+        run.prepare(k, positions, map, aligned, options)?;
     }
     let (cell, placed, sizes_tried) = run.solve(options.size)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
@@ -128,7 +153,7 @@ pub fn to_integer_map(
     let metric = Metric::from_positions(mesh, positions);
     let before = distortion(mesh, &metric, map.corner_uvs());
     let after = distortion(mesh, &metric, &corner_uvs);
-    let map = IntegerMap::certify(mesh, corner_uvs, &options.tolerance)?;
+    let map = IntegerMap::certify_aligned(mesh, corner_uvs, &pairs, &options.tolerance)?;
     Ok(IntegerSolution { map, distortion: after, before, cell, sizes_tried, components: stats })
 }
 
@@ -156,6 +181,7 @@ impl<'p> Run<'p, '_, '_> {
         k: usize,
         positions: &[[f64; 3]],
         map: &SeamlessMap,
+        aligned: &EdgeSet,
         options: &'p IntegerOptions,
     ) -> Result<(), IntegerError> {
         Watch::new(self.observer, k, self.pieces.len()).enter(Stage::Integers)?;
@@ -163,9 +189,12 @@ impl<'p> Run<'p, '_, '_> {
         let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &positions);
         let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
+        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
+        let here = piece.mesh.halfedges().filter(|h| aligned.contains(whole(h)));
+        let aligned = EdgeSet::new(&piece.mesh, here);
         let problem = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
             .map_err(IntegerFailure::Uncertified)
-            .and_then(|map| IntegerProblem::new(&piece.mesh, &metric, &map, options))
+            .and_then(|map| IntegerProblem::new(&piece.mesh, &metric, &map, &aligned, options))
             .map_err(|cause| self.error(k, cause))?;
         self.problems.push(problem);
         Ok(())

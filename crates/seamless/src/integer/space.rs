@@ -1,12 +1,15 @@
 //! Layouts as exact functions of vertex positions and of what must be integral.
 
-use super::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
+use super::conditional::{Row, apply};
+use super::gauss::{Form, Gauss, Overflow, add_scaled};
+use super::isolines::{Levels, Tie, part, tied};
 use super::lattice::Lattice;
+use super::walk::Walker;
 use crate::cut::{Cut, SeamGraph};
-use crate::layout::space::{Expression, LinearSpace};
+use crate::layout::space::LinearSpace;
 use crate::quarter::{turn, unit};
 use num_complex::Complex64;
-use seamstress_surface::{Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
+use seamstress_surface::{Halfedge, HalfedgeData, TriMesh, VertexData};
 
 /// What a wedge's position depends on besides the integral variables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,21 +21,52 @@ pub enum Base {
         /// Quarter turns.
         turns: i32,
     },
-    /// Nothing: the wedge is at a cone, or at the vertex that is held at the origin.
+    /// Nothing: the wedge is at a grid point, or at the vertex that is held at the origin.
     Fixed,
 }
 
+/// What of a mesh has to come to lie on the grid.
+#[derive(Debug, Clone)]
+pub struct GridNeeds {
+    /// The singular vertices, those whose index is a multiple of four included.
+    pub is_cone: VertexData<bool>,
+    /// The vertices that have to be grid points: the cones, and where aligned edges turn.
+    pub is_point: VertexData<bool>,
+    /// Half-edges of aligned edges, and the coordinate that their ends share: 0 for u, 1 for v.
+    pub levels: Vec<(Halfedge, u32)>,
+}
+
+impl GridNeeds {
+    /// Cones alone.
+    pub fn cones(is_cone: VertexData<bool>) -> Self {
+        Self { is_point: is_cone.clone(), is_cone, levels: Vec::new() }
+    }
+}
+
 /// `z_wedge = i^turns x_vertex + form in X`, with X the translation of every chain of seams and the
-/// position of every cone, all of them integral in an integer map.
+/// position of every grid point, all of them integral in an integer map; on an isoline one coordinate of
+/// `x_vertex` is integral as well.
+///
+/// The *held* unknowns are the real and imaginary parts of X by turns, then the level of every isoline that
+/// holds no grid point. They are integer forms in the *coordinates*, which are free.
 #[derive(Debug, Clone)]
 pub struct IntegerSpace {
     bases: Vec<Base>,
     forms: Vec<Form>,
-    n_ordinary: usize,
-    lattice: Lattice,
+    graph: SeamGraph,
+    /// The coordinate of each ordinary vertex that an isoline ties, if one does.
+    ties: Vec<Option<Tie>>,
+    /// `X = B zeta` over the Gaussian integers.
+    seams: Lattice,
+    /// The parts of zeta and the levels of isolines, over the integers.
+    isolines: Lattice,
+    /// Every held unknown in the coordinates.
+    held: Vec<Row>,
     chains: Vec<ChainEnds>,
-    /// A wedge of each cone.
-    cones: Vec<u32>,
+    /// A wedge of each grid point.
+    points: Vec<u32>,
+    /// Where the level of each isoline without a grid point is read: wedge and coordinate.
+    level_wedges: Vec<(u32, u32)>,
     origin: Origin,
 }
 
@@ -52,11 +86,10 @@ enum Origin {
 }
 
 impl IntegerSpace {
-    /// The space over a cut and its matchings; `is_cone` marks the singular vertices, those whose index
-    /// is a multiple of four included.
+    /// The space over a cut and its matchings.
     ///
-    /// Layouts may be translated. That freedom is used to hold something at zero: a cone, without
-    /// cones the translation of a chain that turns, without such chains one vertex.
+    /// Layouts may be translated. That freedom is used to hold something at zero: a grid point, without one
+    /// the translation of a chain that turns, without such chains one vertex.
     ///
     /// # Errors
     /// [`Overflow`].
@@ -64,9 +97,9 @@ impl IntegerSpace {
         mesh: &TriMesh,
         cut: &Cut,
         matching: &HalfedgeData<i32>,
-        is_cone: &VertexData<bool>,
+        needs: &GridNeeds,
     ) -> Result<Self, Overflow> {
-        let graph = SeamGraph::new(mesh, cut, is_cone);
+        let graph = SeamGraph::new(mesh, cut, &needs.is_cone);
         let ends = |&h: &Halfedge| {
             let [left, _, right, _] = cut.seam_wedges(mesh, h);
             ChainEnds { left, right, matching: matching[h] }
@@ -74,13 +107,13 @@ impl IntegerSpace {
         let chains: Vec<_> =
             graph.chains.iter().filter_map(|chain| chain.left.first().map(ends)).collect();
         let mut walker = Walker::new(mesh, cut, &graph, matching);
-        let mut cones = Vec::new();
+        let mut points = Vec::new();
         let mut n_ordinary = 0;
         for v in mesh.vertices() {
             let Some(first) = walker.start(v) else { continue };
-            if is_cone[v] {
-                let position = (chains.len() + cones.len()) as u32;
-                cones.push(cut.wedge[first]);
+            if needs.is_point[v] {
+                let position = (chains.len() + points.len()) as u32;
+                points.push(cut.wedge[first]);
                 walker.walk(v, None, Form::from([(position, Gauss::ONE)]))?;
             } else {
                 walker.walk(v, Some(n_ordinary), Form::new())?;
@@ -88,20 +121,55 @@ impl IntegerSpace {
             }
         }
         let turning = chains.iter().position(|chain| chain.matching.rem_euclid(4) != 0);
-        let (pinned, origin) = match (cones.first(), turning) {
+        let (pinned, origin) = match (points.first(), turning) {
             (Some(&wedge), _) => (Some(chains.len() as u32), Origin::Wedge(wedge)),
             (None, Some(k)) => (Some(k as u32), Origin::Chain(chains[k])),
             (None, None) => (None, Origin::Wedge(walker.hold_last(&mut n_ordinary))),
         };
-        let lattice = Lattice::new(chains.len() + cones.len(), &walker.relations, pinned)?;
+        let n_variables = chains.len() + points.len();
+        let seams = Lattice::new(n_variables, &walker.relations, pinned)?;
         let Walker { bases, forms, .. } = walker;
-        let n_ordinary = n_ordinary as usize;
-        Ok(Self { bases, forms, n_ordinary, lattice, chains, cones, origin })
+        let edges: Vec<([u32; 2], u32)> =
+            needs.levels.iter().map(|&(h, coordinate)| (cut.ends(h), coordinate)).collect();
+        let Levels { ties, wedges: level_wedges, relations } =
+            Levels::new(&bases, &forms, n_ordinary as usize, n_variables, &edges)?;
+        let relations: Vec<Form> =
+            relations.iter().map(|form| in_parts(&seams, form)).collect::<Result<_, Overflow>>()?;
+        let isolines = Lattice::new(2 * seams.rank() + level_wedges.len(), &relations, None)?;
+        let held = (0..(2 * n_variables + level_wedges.len()) as u32)
+            .map(|k| {
+                let parts = in_parts(&seams, &Form::from([(k, Gauss::ONE)]))?;
+                Ok(real_row(&isolines.pull_back(&parts)?))
+            })
+            .collect::<Result<_, Overflow>>()?;
+        Ok(Self {
+            bases,
+            forms,
+            graph,
+            ties,
+            seams,
+            isolines,
+            held,
+            chains,
+            points,
+            level_wedges,
+            origin,
+        })
     }
 
-    /// Number of ordinary vertices that may move.
-    pub fn n_ordinary(&self) -> usize {
-        self.n_ordinary
+    /// Number of integral coordinates.
+    pub fn n_coordinates(&self) -> usize {
+        self.isolines.rank()
+    }
+
+    /// Number of held unknowns.
+    pub fn n_held(&self) -> usize {
+        self.held.len()
+    }
+
+    /// Number of unknowns that are free: the coordinates of the ordinary vertices but those tied.
+    pub fn n_free(&self) -> usize {
+        2 * self.ties.len() - self.ties.iter().flatten().count()
     }
 
     /// Number of wedges.
@@ -109,9 +177,9 @@ impl IntegerSpace {
         self.bases.len()
     }
 
-    /// The integral variables.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
+    /// The chains of seams that the variables X belong to.
+    pub fn graph(&self) -> &SeamGraph {
+        &self.graph
     }
 
     /// What moves a wedge besides the integral variables.
@@ -124,24 +192,94 @@ impl IntegerSpace {
         &self.forms[wedge as usize]
     }
 
-    /// The linear space with the pairs of unknowns `x` of the ordinary vertices first, then X.
-    pub fn linear(&self) -> LinearSpace {
-        let n = self.n_ordinary as u32;
-        let row = |(base, form): (&Base, &Form)| {
-            let mut row: Expression = form.iter().map(|(&v, c)| (n + v, c.to_complex())).collect();
-            if let Base::Ordinary { vertex, turns } = base {
-                row.insert(*vertex, unit(*turns));
+    /// A coordinate of a wedge as a form in the held unknowns, if it is integral.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub fn level(&self, wedge: u32, coordinate: u32) -> Result<Option<Form>, Overflow> {
+        let mut level = part(self.form(wedge), coordinate);
+        if let Base::Ordinary { vertex, turns } = self.base(wedge) {
+            let (of_x, sign) = tied(coordinate, turns);
+            match &self.ties[vertex as usize] {
+                Some(tie) if tie.coordinate == of_x => add_scaled(&mut level, &tie.level, sign)?,
+                _ => return Ok(None),
             }
-            row
-        };
-        let rows: Vec<Expression> = self.bases.iter().zip(&self.forms).map(row).collect();
-        LinearSpace::from_complex(&rows, self.n_ordinary + self.lattice.n_variables())
+        }
+        Ok(Some(level))
     }
 
-    /// The coordinates zeta and positions `x` of a layout, after translating it to meet the pin.
+    /// The held unknowns as integer forms in the coordinates.
+    pub fn held(&self) -> &[Row] {
+        &self.held
+    }
+
+    /// A form in the held unknowns as one in the coordinates.
     ///
-    /// Each is read at one place; what the seams are open by shows at the others.
-    pub fn read(&self, z: &[Complex64]) -> (Vec<Complex64>, Vec<Complex64>) {
+    /// # Errors
+    /// [`Overflow`].
+    pub fn row(&self, form: &Form) -> Result<Row, Overflow> {
+        Ok(real_row(&self.isolines.pull_back(&in_parts(&self.seams, form)?)?))
+    }
+
+    /// Real and imaginary part of a form in X, in the coordinates.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub fn rows(&self, form: &Form) -> Result<[Row; 2], Overflow> {
+        Ok([self.row(&part(form, 0))?, self.row(&part(form, 1))?])
+    }
+
+    /// The linear space with the free unknowns first, then the held ones.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub fn linear(&self) -> Result<LinearSpace, Overflow> {
+        let free = self.free_unknowns();
+        let first_held = self.n_free() as u32;
+        let mut rows: Vec<Vec<(u32, f64)>> = Vec::with_capacity(2 * self.n_wedges());
+        for wedge in 0..self.n_wedges() as u32 {
+            for coordinate in [0, 1] {
+                let mut row = Vec::new();
+                let held = match (self.level(wedge, coordinate)?, self.base(wedge)) {
+                    (None, Base::Ordinary { vertex, turns }) => {
+                        let (of_x, sign) = tied(coordinate, turns);
+                        let unknown = free[vertex as usize][of_x as usize];
+                        row.extend(unknown.map(|k| (k, sign.re as f64)));
+                        part(self.form(wedge), coordinate)
+                    }
+                    (level, _) => level.unwrap_or_default(),
+                };
+                row.extend(held.iter().map(|(&k, c)| (first_held + k, c.re as f64)));
+                rows.push(row);
+            }
+        }
+        let nodes = free.iter().enumerate();
+        let nodes = nodes.flat_map(|(v, own)| own.iter().flatten().map(move |_| v as u32));
+        let n_vertices = self.ties.len() as u32;
+        let held_nodes = (0..self.n_held() as u32).map(|k| n_vertices + k / 2);
+        Ok(LinearSpace::from_rows(nodes.chain(held_nodes).collect(), rows.into_iter()))
+    }
+
+    /// The free unknowns of each ordinary vertex: those of its coordinates, `None` for a tied one.
+    fn free_unknowns(&self) -> Vec<[Option<u32>; 2]> {
+        let mut n = 0;
+        let mut next = |is_free: bool| {
+            is_free.then(|| {
+                n += 1;
+                n - 1
+            })
+        };
+        let unknowns = |tie: &Option<Tie>| {
+            [0, 1].map(|c| next(tie.as_ref().is_none_or(|tie| tie.coordinate != c)))
+        };
+        self.ties.iter().map(unknowns).collect()
+    }
+
+    /// The coordinates of a layout, and its unknowns, the free ones and then the held ones, after
+    /// translating it to meet the pin.
+    ///
+    /// Each is read at one place; what seams and isolines are off by shows at the others.
+    pub fn read(&self, z: &[Complex64]) -> (Vec<f64>, Vec<f64>) {
         let at = |w: u32| z[w as usize];
         let translation =
             |c: &ChainEnds, by: Complex64| at(c.right) - by - turn(at(c.left) - by, c.matching);
@@ -153,124 +291,97 @@ impl IntegerSpace {
         };
         let mut variables: Vec<Complex64> =
             self.chains.iter().map(|c| translation(c, origin)).collect();
-        variables.extend(self.cones.iter().map(|&w| at(w) - origin));
-        let zeta = self.coordinates(&variables);
-        let exact = self.variables(&zeta);
-        let mut x = vec![Complex64::ZERO; self.n_ordinary];
+        variables.extend(self.points.iter().map(|&w| at(w) - origin));
+        let zeta = (0..self.seams.rank()).map(|k| evaluate(self.seams.coordinate(k), &variables));
+        let mut parts: Vec<f64> = zeta.flat_map(|z| [z.re, z.im]).collect();
+        for &(w, coordinate) in &self.level_wedges {
+            let Base::Ordinary { turns, .. } = self.base(w) else { continue };
+            let x = turn(at(w) - origin - evaluate(self.form(w), &variables), -turns);
+            parts.push(if tied(coordinate, turns).0 == 0 { x.re } else { x.im });
+        }
+        let coordinate = |k: usize| {
+            let form = self.isolines.coordinate(k);
+            form.iter().map(|(&v, c)| c.re as f64 * parts[v as usize]).sum()
+        };
+        let coordinates: Vec<f64> = (0..self.n_coordinates()).map(coordinate).collect();
+        let held = self.expand_real(&coordinates);
+        let exact: Vec<Complex64> = self.variables(&held).collect();
+        let free = self.free_unknowns();
+        let mut y = vec![0.0; self.n_free()];
         for (w, base) in self.bases.iter().enumerate() {
             if let Base::Ordinary { vertex, turns } = *base {
                 let moved = z[w] - origin - evaluate(&self.forms[w], &exact);
-                x[vertex as usize] = turn(moved, -turns);
+                let x = turn(moved, -turns);
+                for (unknown, x) in free[vertex as usize].into_iter().zip([x.re, x.im]) {
+                    if let Some(k) = unknown {
+                        y[k as usize] = x;
+                    }
+                }
             }
         }
-        (zeta, x)
+        y.extend(held);
+        (coordinates, y)
     }
 
-    /// The coordinates zeta of integral variables.
-    pub fn coordinates(&self, variables: &[Complex64]) -> Vec<Complex64> {
-        (0..self.lattice.rank()).map(|k| evaluate(self.lattice.coordinate(k), variables)).collect()
+    /// Positions of the ordinary vertices for free and held unknowns.
+    pub fn positions(&self, free: &[f64], held: &[f64]) -> Vec<Complex64> {
+        let unknowns = self.free_unknowns();
+        let position = |(tie, unknowns): (&Option<Tie>, [Option<u32>; 2])| {
+            let level = || {
+                let level = tie.iter().flat_map(|tie| &tie.level);
+                level.map(|(&k, c)| c.re as f64 * held[k as usize]).sum::<f64>()
+            };
+            let [re, im] = unknowns.map(|k| k.map_or_else(level, |k| free[k as usize]));
+            Complex64::new(re, im)
+        };
+        self.ties.iter().zip(unknowns).map(position).collect()
     }
 
-    /// `X = B zeta` for any complex zeta.
-    pub fn variables(&self, zeta: &[Complex64]) -> Vec<Complex64> {
-        (0..self.lattice.n_variables()).map(|v| evaluate(self.lattice.row(v), zeta)).collect()
+    /// The variables X among held unknowns.
+    fn variables<'a>(&self, held: &'a [f64]) -> impl Iterator<Item = Complex64> + 'a {
+        let n = 2 * self.seams.n_variables();
+        held[..n].chunks(2).map(|pair| Complex64::new(pair[0], pair[1]))
     }
+
+    /// The held unknowns at real coordinates.
+    pub fn expand_real(&self, coordinates: &[f64]) -> Vec<f64> {
+        self.held.iter().map(|row| apply(row, coordinates)).collect()
+    }
+
+    /// The held unknowns at integers.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub fn expand(&self, coordinates: &[i64]) -> Result<Vec<i64>, Overflow> {
+        let value = |row: &Row| {
+            row.iter()
+                .try_fold(0i64, |sum, &(k, c)| sum.checked_add(c.checked_mul(coordinates[k])?))
+        };
+        self.held.iter().map(|row| value(row).ok_or(Overflow)).collect()
+    }
+}
+
+/// A form in the held unknowns as one in the parts of zeta and the levels of isolines.
+fn in_parts(seams: &Lattice, form: &Form) -> Result<Form, Overflow> {
+    let (n_held, n_parts) = (2 * seams.n_variables() as u32, 2 * seams.rank() as u32);
+    let mut result = Form::new();
+    for (&k, &c) in form {
+        if k < n_held {
+            let row = part(seams.row(k as usize / 2), k % 2);
+            add_scaled(&mut result, &row, c)?;
+        } else {
+            add_scaled(&mut result, &Form::from([(n_parts + k - n_held, Gauss::ONE)]), c)?;
+        }
+    }
+    Ok(result)
+}
+
+/// A real form as a row.
+fn real_row(form: &Form) -> Row {
+    form.iter().map(|(&k, c)| (k as usize, c.re)).collect()
 }
 
 /// The value of a form at complex variables.
 pub fn evaluate(form: &Form, at: &[Complex64]) -> Complex64 {
     form.iter().map(|(&v, c)| c.to_complex() * at[v as usize]).sum()
-}
-
-/// Walks around the vertices and writes down how the wedges follow from each other.
-struct Walker<'a> {
-    mesh: &'a TriMesh,
-    cut: &'a Cut,
-    graph: &'a SeamGraph,
-    matching: &'a HalfedgeData<i32>,
-    bases: Vec<Base>,
-    forms: Vec<Form>,
-    relations: Vec<Form>,
-}
-
-impl<'a> Walker<'a> {
-    fn new(
-        mesh: &'a TriMesh,
-        cut: &'a Cut,
-        graph: &'a SeamGraph,
-        matching: &'a HalfedgeData<i32>,
-    ) -> Self {
-        Self {
-            mesh,
-            cut,
-            graph,
-            matching,
-            bases: vec![Base::Fixed; cut.n_wedges],
-            forms: vec![Form::new(); cut.n_wedges],
-            relations: Vec::new(),
-        }
-    }
-
-    /// Where the walk around a vertex starts: at the boundary, behind a seam, or anywhere.
-    fn start(&self, v: Vertex) -> Option<Halfedge> {
-        let mut fan = self.mesh.outgoing(v);
-        let first = fan.next()?;
-        if self.mesh.is_boundary(v) || self.cut.is_seam[first] {
-            return Some(first);
-        }
-        Some(fan.find(|&h| self.cut.is_seam[h]).unwrap_or(first))
-    }
-
-    /// Walks once around a vertex, from a wedge at `i^0` times its position plus a form.
-    fn walk(&mut self, v: Vertex, ordinary: Option<u32>, start: Form) -> Result<(), Overflow> {
-        let Some(first) = self.start(v) else { return Ok(()) };
-        let mut fan: Vec<Halfedge> = self.mesh.outgoing(v).collect();
-        let begin = fan.iter().position(|&h| h == first).unwrap_or(0);
-        fan.rotate_left(begin);
-        let (mut turns, mut form) = (0, start.clone());
-        for (k, &h) in fan.iter().enumerate() {
-            if k > 0 && self.cut.is_seam[h] {
-                (turns, form) = self.across(h, turns, &form)?;
-            }
-            let wedge = self.cut.wedge[h] as usize;
-            self.bases[wedge] =
-                ordinary.map_or(Base::Fixed, |vertex| Base::Ordinary { vertex, turns });
-            self.forms[wedge] = form.clone();
-        }
-        if !self.mesh.is_boundary(v) && self.cut.is_seam[first] {
-            let (_, mut relation) = self.across(first, turns, &form)?;
-            add_scaled(&mut relation, &start, Gauss::ONE.negated())?;
-            if !relation.is_empty() {
-                self.relations.push(relation);
-            }
-        }
-        Ok(())
-    }
-
-    /// From the wedge on the right of an outgoing seam to the one on its left.
-    fn across(&self, seam: Halfedge, turns: i32, right: &Form) -> Result<(i32, Form), Overflow> {
-        let back = -self.matching[seam];
-        let mut left = scaled(right, Gauss::unit(back))?;
-        if let Some((chain, along)) = self.graph.chain_of[seam] {
-            // along the chain: right = i^r left + t; against it: left = i^-r right + t
-            let factor = if along { Gauss::unit(back).negated() } else { Gauss::ONE };
-            add_scaled(&mut left, &Form::from([(chain, Gauss::ONE)]), factor)?;
-        }
-        Ok((turns + back, left))
-    }
-
-    /// Holds the ordinary vertex of the highest number at the origin; returns a wedge of it.
-    fn hold_last(&mut self, n_ordinary: &mut u32) -> u32 {
-        *n_ordinary = n_ordinary.saturating_sub(1);
-        let mut held = 0;
-        for (w, base) in self.bases.iter_mut().enumerate() {
-            if matches!(*base, Base::Ordinary { vertex, .. } if vertex == *n_ordinary) {
-                if self.forms[w].is_empty() {
-                    held = w as u32;
-                }
-                *base = Base::Fixed;
-            }
-        }
-        held
-    }
 }

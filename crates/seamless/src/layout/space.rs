@@ -46,7 +46,7 @@ impl LinearSpace {
     }
 
     /// From the node of each unknown and the rows, columns with coefficients.
-    pub(super) fn from_rows(nodes: Vec<u32>, rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Self {
+    pub(crate) fn from_rows(nodes: Vec<u32>, rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Self {
         let mut space =
             Self { nodes, offsets: vec![0], columns: Vec::new(), coefficients: Vec::new() };
         for row in rows {

@@ -85,6 +85,24 @@ impl Alignment {
     }
 }
 
+/// Those of some edges, given by their end vertices, whose images run along the axes of a map.
+#[must_use]
+pub fn edges_along_axes(
+    mesh: &TriMesh,
+    map: &SeamlessMap,
+    edges: &[[u32; 2]],
+    tolerance: &AlignmentTolerance,
+) -> Vec<[u32; 2]> {
+    let check = Check { mesh, corner_uvs: map.corner_uvs(), violations: Vec::new() };
+    let is_along = |&[a, b]: &[u32; 2]| {
+        mesh.edge_between(Vertex(a), Vertex(b)).is_some_and(|edge| {
+            let mut sides = std::iter::once(edge).chain(mesh.twin(edge));
+            sides.all(|side| within(degrees_off_axis(check.image(side)), tolerance.axis))
+        })
+    };
+    edges.iter().copied().filter(is_along).collect()
+}
+
 struct Check<'a> {
     mesh: &'a TriMesh,
     corner_uvs: &'a [[f64; 2]],

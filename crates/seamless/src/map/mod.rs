@@ -4,6 +4,6 @@ mod alignment;
 mod certificate;
 mod violation;
 
-pub use alignment::{Alignment, AlignmentTolerance};
+pub use alignment::{Alignment, AlignmentTolerance, edges_along_axes};
 pub use certificate::{Certificate, Cone, SeamEdge, SeamlessMap, Tolerance, compare_source};
 pub use violation::{Violation, Violations};

@@ -113,6 +113,22 @@ pub enum Violation {
         /// Where it lies in one of its faces.
         uv: [f64; 2],
     },
+    /// A vertex at which aligned edges turn is not at a grid point.
+    #[error("the corner at vertex {vertex} lies at ({}, {})", uv[0], uv[1])]
+    FractionalCorner {
+        /// The vertex.
+        vertex: u32,
+        /// Where it lies in one of its faces.
+        uv: [f64; 2],
+    },
+    /// The image of an aligned edge does not lie on an isoline at an integer.
+    #[error("edge {}-{} is not at an integer in face {face}", vertices[0], vertices[1])]
+    OffIsoline {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// The face on the side of this image.
+        face: u32,
+    },
     /// The indices of a component do not add up to four times its Euler characteristic.
     #[error("the indices of component {component} sum to {sum}, not to {expected}")]
     PoincareHopf {
@@ -172,6 +188,7 @@ impl Violations {
                 | Violation::ChangedFace { face } => face_of(face),
                 Violation::ConeAngle { vertex, .. }
                 | Violation::FractionalCone { vertex, .. }
+                | Violation::FractionalCorner { vertex, .. }
                 | Violation::MovedVertex { vertex, .. } => vertex_of(vertex),
                 Violation::OpenSeam { vertices, faces, .. }
                 | Violation::InexactEdge { vertices, faces }
@@ -180,7 +197,8 @@ impl Violations {
                     faces.iter_mut().for_each(face_of);
                 }
                 Violation::NotAnEdge { vertices } => vertices.iter_mut().for_each(vertex_of),
-                Violation::OffAxis { vertices, face, .. } => {
+                Violation::OffAxis { vertices, face, .. }
+                | Violation::OffIsoline { vertices, face } => {
                     vertices.iter_mut().for_each(vertex_of);
                     face_of(face);
                 }
