@@ -1,7 +1,7 @@
 //! `seamstress quad`.
 
 use crate::args::QuadArgs;
-use crate::extract::{quad_rows, quads_json, smoothed, tell_losses, write_quads};
+use crate::extract::{quad_rows, quads_json, tell_losses, write_quads};
 use crate::input::LoadedMesh;
 use crate::integer::{grid_json, grid_text, make_seamless};
 use crate::job::{Job, Worker};
@@ -9,10 +9,11 @@ use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, Cost, VERSION};
+use crate::shape::{Shaped, Shaping};
 use crate::summary;
-use crate::text::{self, row};
-use seamstress::{IntegerError, IntegerOptions, IntegerSolution, to_integer_map};
-use seamstress_quads::{ExtractOptions, Extraction, QuadConnectivity, QuadFaults, extract};
+use crate::text::{self, counted, row};
+use seamstress::{IntegerError, IntegerOptions, IntegerSolution, Progress, to_integer_map};
+use seamstress_quads::{Extraction, ManifoldError, QuadConnectivity, QuadFaults, manifold_quads};
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -20,8 +21,11 @@ use std::io::Write;
 struct Product {
     mesh: LoadedMesh,
     integer: IntegerSolution,
+    /// Coarser grids whose quads were no manifold.
+    refinements: usize,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
+    shaped: Shaped,
     picture: Option<Vec<u8>>,
 }
 
@@ -53,47 +57,55 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     let positions = &mesh.soup.positions;
     let map = make_seamless(&args.method, &mesh, &source, &mut worker)?;
 
-    let options = IntegerOptions { size: args.size.grid(), ..IntegerOptions::default() };
-    let made = to_integer_map(&source, positions, &map, &options, &mut |progress| {
-        worker.observe(progress)
-    });
-    let integer = made.map_err(|cause| {
-        let file = mesh.path.clone();
-        match (cause, worker.stop.reason()) {
-            (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
-            (cause, _) => {
-                let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
-                Failure::NoIntegerMap { file, cause, advice }
+    let made = manifold_quads(&source, positions, args.size.grid(), |size| {
+        let options = IntegerOptions { size, ..IntegerOptions::default() };
+        let mut observer = |progress: Progress| worker.observe(progress);
+        let made = to_integer_map(&source, positions, &map, &options, &mut observer);
+        made.map_err(|cause| {
+            let file = mesh.path.clone();
+            match (cause, worker.stop.reason()) {
+                (IntegerError::Cancelled(_), Some(reason)) => Failure::Stopped { file, reason },
+                (cause, _) => {
+                    let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
+                    Failure::NoIntegerMap { file, cause, advice }
+                }
             }
-        }
-    })?;
+        })
+    })
+    .map_err(|error| no_quads(error, &mesh))?;
     worker.stop.lift_limit();
 
-    let no_quads = |text| Failure::NoQuads { file: mesh.path.clone(), text };
-    let mut extraction =
-        extract(&source, positions, integer.map.corner_uvs(), &ExtractOptions::default())
-            .map_err(|error| no_quads(error.to_string()))?;
+    let mut extraction = made.extraction;
     if !args.run.quiet {
         tell_losses(&extraction);
     }
-    let connectivity = extraction.mesh.connectivity();
-    if let Err(faults) = &connectivity {
-        return Err(Failure::Internal {
-            file: mesh.path.clone(),
-            text: format!("the quads are no manifold: {faults}"),
-        });
-    }
-    if args.smooth > 0 {
-        extraction.mesh = smoothed(args.smooth, &mesh, &extraction.mesh)?;
-    }
-    let picture = args.picture.is_some().then(|| {
-        let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
-        pictures::draw_quads(&extraction.mesh, &irregular.unwrap_or_default())
-    });
+    let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: &[] };
+    let shaped = shaping.apply(&mesh, &source, &mut extraction)?;
+    let picture = args
+        .picture
+        .is_some()
+        .then(|| pictures::draw_quads(&extraction.mesh, &made.connectivity.irregular_vertices()));
     let picture = picture
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, integer, extraction, connectivity, picture })
+    Ok(Product {
+        mesh,
+        integer: made.integer,
+        refinements: made.refinements,
+        extraction,
+        connectivity: Ok(made.connectivity),
+        shaped,
+        picture,
+    })
+}
+
+fn no_quads(error: ManifoldError<Failure>, mesh: &LoadedMesh) -> Failure {
+    let file = mesh.path.clone();
+    match error {
+        ManifoldError::Integer(failure) => failure,
+        ManifoldError::NoManifold(faults) => Failure::NoManifold { file, faults },
+        other => Failure::NoQuads { file, text: other.to_string() },
+    }
 }
 
 /// Writes everything, puts it in place and prints the summary.
@@ -125,6 +137,7 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "command": "quad",
         "options": {
             "size": args.size.grid(),
+            "raw": args.raw,
             "smooth": args.smooth,
             "repair": args.repair,
             "cone_bias": args.method.cone_bias,
@@ -136,7 +149,9 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "grid": grid_json(args.size.grid(), integer),
         "distortion": report::distortion_json(&integer.distortion),
         "integer_certificate": integer.map.certificate(),
+        "manifold_refinements": product.refinements,
         "quads": quads_json(&product.extraction, &product.connectivity),
+        "mended": product.shaped.json(),
         "files": plan.targets,
         "cost": cost,
     })
@@ -145,9 +160,15 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
 fn summary_text(args: &QuadArgs, plan: &Plan, product: &Product, cost: &Cost) -> String {
     let integer = &product.integer;
     let mut rows = summary::mesh_rows(&product.mesh);
-    rows.push(row("grid", &grid_text(args.size.grid(), integer)));
+    let mut grid = grid_text(args.size.grid(), integer);
+    if product.refinements > 0 {
+        let times = counted(product.refinements, "time");
+        grid += &format!("; {times} finer for the quads to be a manifold");
+    }
+    rows.push(row("grid", &grid));
     rows.extend(summary::distortion_rows(&integer.distortion));
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
+    rows.extend(product.shaped.row());
     rows.push(summary::cost_row(cost, std::iter::empty()));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();
