@@ -322,3 +322,45 @@ fn layouts_name_the_features_that_their_map_does_not_follow() {
         other => panic!("expected released features, got {other:?}"),
     }
 }
+
+#[test]
+fn matchings_outlive_the_release_of_features() {
+    for seed in 0..4 {
+        let soup = kit::random_surface(seed);
+        let (mesh, metric) = surface(&soup);
+        let mut rng = kit::Rng::new(seed);
+        let mut some = |share: f64| -> Vec<[u32; 2]> {
+            let edges = mesh.edges().filter(|_| rng.unit() < share);
+            edges.map(|h| [mesh.origin(h).0, mesh.tip(h).0]).collect()
+        };
+        let (kept, released) = (some(0.04), some(0.04));
+        let few = of_pairs(&soup, &kept, false);
+        let many = few.union(&mesh, &of_pairs(&soup, &released, true));
+        let from = Sectors::new(&mesh, &metric, &many);
+        let to = Sectors::new(&mesh, &metric, &few);
+        let mut matched = MatchedCut::through_curved_sectors(&from, &metric);
+        let options = RoundingOptions::default();
+        unwatched(|watch| round(&from, &metric, &mut matched, &options, watch)).unwrap();
+        let (fewer, _) = matched.with_fewer_aligned(&from, &to, &metric);
+        // The angle around each vertex stays what it is.
+        let around = |sectors: &Sectors<'_>, matched: &MatchedCut| {
+            let index = matched.sector_indices(sectors, &metric);
+            let mut sum = vec![0.0; mesh.n_vertices()];
+            for s in sectors.slit().vertices() {
+                sum[sectors.vertex(s).at()] += sectors.quarters(s, f64::from(index[s]));
+            }
+            sum
+        };
+        let free = |v: &Vertex| !mesh.is_boundary(*v);
+        let (before, after) = (around(&from, &matched), around(&to, &fewer));
+        for v in mesh.vertices().filter(free) {
+            assert_eq!(before[v.at()], after[v.at()], "vertex {v:?}");
+        }
+        // Rotations and indices still agree.
+        let r: Vec<f64> = fewer.matching.iter().map(|&r| f64::from(r)).collect();
+        let index = fewer.indices(&to, &metric, &r);
+        let off = to.slit().vertices().filter(|&s| !to.is_free(s));
+        let off = off.map(|s| (index[s] - index[s].round()).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-9, "an index {off} off an integer");
+    }
+}

@@ -4,7 +4,7 @@ use super::fewer_cones::fewer_cones;
 use super::finish::Finished;
 use super::mended::lay_out_or_mend;
 use super::parts::in_component;
-use super::start::Start;
+use super::start::{Begun, Start};
 use super::{ComponentStats, MapOptions, StageStats};
 use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
 use crate::layout::exact::ExactLayout;
@@ -53,12 +53,13 @@ pub(super) fn map_component(
     let metric = Metric::from_positions(mesh, &positions);
     let (mut features, mut released) =
         drop_conflicts(mesh, &positions, &metric, in_component(features, piece));
+    let mut sectors = Sectors::new(mesh, &metric, &features);
+    let mut begun = None;
     for round in 0..=RELEASE_ROUNDS {
         if features.is_empty() {
             break;
         }
-        let sectors = Sectors::new(mesh, &metric, &features);
-        let failure = match solve(&sectors, &metric, 1.0, start, options, watch) {
+        let failure = match solve(&sectors, &metric, 1.0, start, &mut begun, options, watch) {
             Ok((uvs, stats)) => return Ok(ComponentMap { uvs, features, released, stats }),
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(failure) => failure,
@@ -68,7 +69,10 @@ pub(super) fn map_component(
             _ => VertexData::filled(mesh.n_vertices(), true),
         };
         let (kept, more) = release_near(mesh, near, round, &features);
-        features = kept;
+        let fewer = Sectors::new(mesh, &metric, &kept);
+        // What was rounded stays, unless it was at fault itself.
+        begun = begun.and_then(|b: Begun| b.with_fewer_aligned(&sectors, &fewer, &metric).ok());
+        (features, sectors) = (kept, fewer);
         released.extend(more);
     }
     let (uvs, stats) = map_unaligned(mesh, &metric, start, options, watch)?;
@@ -86,7 +90,7 @@ fn map_unaligned(
     let sectors = Sectors::unaligned(mesh);
     let mut first_failure = None;
     for exponent in EXPONENTS {
-        match solve(&sectors, metric, exponent, start, options, watch) {
+        match solve(&sectors, metric, exponent, start, &mut None, options, watch) {
             Ok(solved) => return Ok(solved),
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(failure) => first_failure = first_failure.or(Some(failure)),
@@ -96,7 +100,7 @@ fn map_unaligned(
     if let (LayoutError::Defective(_), Some(options)) =
         (&failure, last_resort(mesh, start, options))
     {
-        match solve(&sectors, metric, 1.0, start, &options, watch) {
+        match solve(&sectors, metric, 1.0, start, &mut None, &options, watch) {
             Ok(solved) => return Ok(solved),
             Err(LayoutError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(_) => {}
@@ -116,12 +120,14 @@ fn last_resort(mesh: &TriMesh, start: &Start, options: &MapOptions) -> Option<Ma
 }
 
 /// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the
-/// given exponent, and back to the plain metric.
+/// given exponent, and back to the plain metric. Matchings given are laid out as they are; where edges are
+/// aligned, those that were laid out are left there.
 fn solve(
     sectors: &Sectors<'_>,
     plain: &Metric,
     exponent: f64,
     start: &Start,
+    given: &mut Option<Begun>,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
@@ -133,7 +139,11 @@ fn solve(
     clock.lap(Stage::Cut, 0);
 
     watch.enter(Stage::Rounding)?;
-    let mut begun = start.begin(sectors, &metric, options, watch)?;
+    let mut begun = match given.take() {
+        Some(begun) => begun,
+        None => start.begin(sectors, &metric, options, watch)?,
+    };
+    *given = sectors.any_aligned().then(|| begun.clone());
     let mixed_integer = begun.mixed_integer.take();
     clock.lap(Stage::Rounding, begun.layouts);
 

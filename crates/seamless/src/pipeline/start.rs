@@ -16,6 +16,7 @@ use crate::layout::safeguards::LayoutError;
 use crate::map::{Violation, Violations};
 use crate::mixed_integer::{MixedIntegerStats, round_mixed_integer};
 use crate::progress::Watch;
+use crate::quarter::turn;
 use crate::rounding::{MatchedCut, RoundingStrategy, fix_holonomy, repair, round};
 use num_complex::Complex64;
 use seamstress_surface::{Component, Metric, TriMesh};
@@ -39,6 +40,7 @@ pub enum Start {
 }
 
 /// Matchings, and frames in the gauge of their cut, to lay out from.
+#[derive(Clone)]
 pub(super) struct Begun {
     pub(super) matched: MatchedCut,
     pub(super) frames: Vec<Complex64>,
@@ -140,6 +142,24 @@ impl Start {
 }
 
 impl Begun {
+    /// The same where fewer edges are aligned.
+    ///
+    /// # Errors
+    /// [`LayoutError::Defective`] with sectors that no triangles can make.
+    pub(super) fn with_fewer_aligned(
+        self,
+        from: &Sectors<'_>,
+        to: &Sectors<'_>,
+        metric: &Metric,
+    ) -> Result<Self, LayoutError> {
+        let (matched, gauge) = self.matched.with_fewer_aligned(from, to, metric);
+        let frames = self.frames.iter().zip(gauge.iter()).map(|(&r, &k)| turn(r, k)).collect();
+        let repaired = self.shifted_seams;
+        let mut begun = Self { matched, frames, ..self }.repaired(to, metric)?;
+        begun.shifted_seams += repaired;
+        Ok(begun)
+    }
+
     /// With indices that the triangles can have. At aligned edges what cannot be repaired is a failure:
     /// edges are released then.
     fn repaired(mut self, sectors: &Sectors<'_>, metric: &Metric) -> Result<Self, LayoutError> {

@@ -90,6 +90,55 @@ impl MatchedCut {
         full
     }
 
+    /// The same matchings where fewer edges are aligned, over a tree of their own; and the quarter turns by
+    /// which the faces' gauge changes. Sectors that become one have the sum of their angles.
+    pub fn with_fewer_aligned(
+        &self,
+        from: &Sectors<'_>,
+        to: &Sectors<'_>,
+        metric: &Metric,
+    ) -> (Self, FaceData<i32>) {
+        let mut other = Self::through_curved_sectors(to, metric);
+        let mut matching = self.matching_per_halfedge(from);
+        let mut transport = self.transport(from);
+        for [h, t] in from.aligned_pairs().filter(|&[h, _]| !to.is_aligned(h)) {
+            (matching[h], transport[h]) =
+                (matching[h] - matching[t] + 2, transport[h] - transport[t]);
+            (matching[t], transport[t]) = (-matching[h], -transport[h]);
+        }
+        let (matching, gauge) = regauge(to.slit(), &other.tree, &matching);
+        // The transport, which tells the lift, is brought into the gauge in which trees turn nothing.
+        let mut turn = FaceData::filled(to.slit().n_faces(), 0.0);
+        for &f in &other.tree.order {
+            if let Some(h) = other.tree.ground[f] {
+                turn[f] = transport[h];
+            }
+            if let Some(h) = other.tree.parent[f] {
+                turn[f] = turn[h.face()] - transport[h];
+            }
+        }
+        for (e, &h) in other.turning.iter().enumerate() {
+            let right = to.slit().twin(h).map_or(0.0, |t| turn[t.face()]);
+            let lifted = other.isometric[e] + transport[h] + right - turn[h.face()];
+            let whole_turns = ((lifted - f64::from(matching[h])) / 4.0).round() as i32;
+            other.matching[e] = matching[h] + 4 * whole_turns;
+        }
+        (other, gauge)
+    }
+
+    /// By how much each half-edge of the slit mesh turns beyond its isometric rotation: negated on twins, zero
+    /// across the tree.
+    fn transport(&self, sectors: &Sectors<'_>) -> HalfedgeData<f64> {
+        let mut transport = HalfedgeData::filled(sectors.slit().n_halfedges(), 0.0);
+        for ((&h, &r), &r0) in self.turning.iter().zip(&self.matching).zip(&self.isometric) {
+            transport[h] = f64::from(r) - r0;
+            if let Some(t) = sectors.slit().twin(h) {
+                transport[t] = -transport[h];
+            }
+        }
+        transport
+    }
+
     /// Adds whole turns of edges (per half-edge, negated on twins) and returns to the gauge of the tree;
     /// gives the quarter turns by which the faces' gauge changed.
     pub fn turn(&mut self, sectors: &Sectors<'_>, by: &HalfedgeData<i32>) -> FaceData<i32> {
