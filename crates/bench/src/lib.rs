@@ -1,5 +1,6 @@
 //! What the measuring programs of Seamstress share.
 
+pub mod maps;
 pub mod markdown;
 pub mod meshes;
 pub mod process;

@@ -43,6 +43,14 @@ pub struct Mesh {
     pub positions: Vec<[f64; 3]>,
 }
 
+impl Mesh {
+    /// The vertices of its triangles.
+    pub fn faces(&self) -> Vec<[u32; 3]> {
+        let faces = self.connectivity.faces();
+        faces.map(|f| self.connectivity.face_vertices(f).map(|v| v.0)).collect()
+    }
+}
+
 /// Reads a mesh and splits its polygons.
 ///
 /// # Errors

@@ -8,13 +8,14 @@ use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, Cost, VERSION};
+use crate::shape::{Shaped, Shaping};
 use crate::summary;
 use crate::text::{self, counted, row};
 use seamstress_io::{Format, Polymesh};
 use seamstress_quads::extract::{Folds, MapFaults};
 use seamstress_quads::{
     ExtractError, ExtractOptions, Extraction, IrregularVertex, QuadConnectivity, QuadFaults,
-    QuadMesh, SmoothError, SmoothOptions, extract, smooth,
+    extract,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -29,6 +30,7 @@ struct Product {
     mesh: LoadedMesh,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
+    shaped: Shaped,
     picture: Option<Vec<u8>>,
 }
 
@@ -67,8 +69,11 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
     if let (Err(faults), false) = (&connectivity, args.best_effort) {
         return Err(Failure::NoManifold { file: args.map.clone(), faults: faults.clone() });
     }
-    if args.smooth > 0 {
-        extraction.mesh = smoothed(args.smooth, &mesh, &extraction.mesh)?;
+    // What folds have left holes in is no surface to shape.
+    let mut shaped = Shaped::default();
+    if connectivity.is_ok() && extraction.folds.is_none() {
+        let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: &[] };
+        shaped = shaping.apply(&mesh, &source, &mut extraction)?;
     }
     let picture = args.picture.is_some().then(|| {
         let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
@@ -77,22 +82,7 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
     let picture = picture
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: args.map.clone(), cause })?;
-    Ok(Product { mesh, extraction, connectivity, picture })
-}
-
-/// The quads after smoothing on the mesh they come from.
-pub(crate) fn smoothed(
-    rounds: u32,
-    mesh: &LoadedMesh,
-    quads: &QuadMesh,
-) -> Result<QuadMesh, Failure> {
-    let options = SmoothOptions { rounds, ..SmoothOptions::default() };
-    let file = mesh.path.clone();
-    match smooth(quads, (&mesh.soup.positions, &mesh.soup.faces), &options) {
-        Ok(smoothed) => Ok(smoothed.mesh),
-        Err(SmoothError::NoManifold(faults)) => Err(Failure::NoManifold { file, faults }),
-        Err(error) => Err(Failure::NoQuads { file, text: error.to_string() }),
-    }
+    Ok(Product { mesh, extraction, connectivity, shaped, picture })
 }
 
 /// An error with the elements it names, and what to do about it.
@@ -202,6 +192,7 @@ pub(crate) fn write_quads(
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
+    rows.extend(product.shaped.row());
     let mut time = format!("{:.2} s", cost.wall_seconds);
     if let Some(cpu) = cost.cpu_seconds {
         time += &format!(", {cpu:.2} s of CPU");
@@ -286,6 +277,7 @@ fn report_json(args: &ExtractArgs, plan: &Plan, product: &Product, cost: Cost) -
         "seamstress": VERSION,
         "command": "extract",
         "options": {
+            "raw": args.raw,
             "smooth": args.smooth,
             "tolerance": args.tolerance,
             "best_effort": args.best_effort,

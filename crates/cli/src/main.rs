@@ -24,6 +24,7 @@ mod quad_file;
 mod quality;
 mod repair_matchings;
 mod report;
+mod shape;
 mod start;
 mod stop;
 mod stretches;

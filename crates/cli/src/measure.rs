@@ -103,26 +103,12 @@ impl Measured {
             rows.push(row("left out", &format!("{triangles} without area on the surface")));
         }
         rows.push(String::new());
-        rows.push(line(["measure", "ideal", "scale", "mean", "maximum", "median", "95%", "99%"]));
-        rows.extend(self.summaries.iter().map(|summary| {
-            let percentiles = summary.percentiles;
-            let mark = |aggregate, x: f64| {
-                let is_goal = Objective::ALL.iter().any(|o| o.measure() == Some(summary.measure));
-                let is_figure = is_goal && summary.measure.aggregate() == aggregate;
-                let star = if is_figure { "*" } else { " " };
-                format!("{}{star}", figure(x))
-            };
-            line([
-                summary.measure.name(),
-                &figure(summary.measure.ideal()),
-                &if is_scaled(summary.measure) { figure(summary.scale) } else { "-".into() },
-                &mark(Aggregate::Mean, summary.mean),
-                &mark(Aggregate::Max, summary.max),
-                &figure(percentiles.p50),
-                &figure(percentiles.p95),
-                &figure(percentiles.p99),
-            ])
-        }));
+        rows.push(line(TITLES));
+        let is_goal = |measure: Measure, aggregate| {
+            let is_goal = Objective::ALL.iter().any(|o| o.measure() == Some(measure));
+            is_goal && measure.aggregate() == aggregate
+        };
+        rows.extend(self.summaries.iter().map(|summary| summary_line(summary, is_goal)));
         rows.push(String::new());
         rows.push("* what `seamstress layout` can minimise".into());
         if let Some(path) = &args.picture {
@@ -132,12 +118,38 @@ impl Measured {
     }
 }
 
+/// Titles of the table of measures.
+pub(crate) const TITLES: [&str; 8] =
+    ["measure", "ideal", "scale", "mean", "maximum", "median", "95%", "99%"];
+
+/// A row of that table; figures that `has_star` gets one.
+pub(crate) fn summary_line(
+    summary: &Summary,
+    has_star: impl Fn(Measure, Aggregate) -> bool,
+) -> String {
+    let percentiles = summary.percentiles;
+    let mark = |aggregate, x: f64| {
+        let star = if has_star(summary.measure, aggregate) { "*" } else { " " };
+        format!("{}{star}", figure(x))
+    };
+    line([
+        summary.measure.name(),
+        &figure(summary.measure.ideal()),
+        &if is_scaled(summary.measure) { figure(summary.scale) } else { "-".into() },
+        &mark(Aggregate::Mean, summary.mean),
+        &mark(Aggregate::Max, summary.max),
+        &figure(percentiles.p50),
+        &figure(percentiles.p95),
+        &figure(percentiles.p99),
+    ])
+}
+
 fn is_scaled(measure: Measure) -> bool {
     !matches!(measure, Measure::TauTilde | Measure::AsapMax | Measure::Dilatation)
 }
 
 /// A row of the table.
-fn line([name, figures @ ..]: [&str; 8]) -> String {
+pub(crate) fn line([name, figures @ ..]: [&str; 8]) -> String {
     let cells: Vec<String> = figures.iter().map(|cell| format!("{cell:>10}")).collect();
     format!("{name:<20}{}", cells.join(" "))
 }

@@ -7,10 +7,10 @@ use seamstress::SeamlessMap;
 use seamstress::quality::Summary;
 use seamstress_quads::{IrregularVertex, QuadMesh};
 use seamstress_render::{
-    HeatMap, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout,
+    HeatMap, Image, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout,
     render_surface,
 };
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_surface::soup::{self, TriangleSoup};
 
 /// The files, in the order of [`draw`].
 pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
@@ -18,17 +18,7 @@ pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];
 /// Draws the surface from both sides in the colours of a measure, with a legend, as one PNG.
 pub(crate) fn heat(soup: &TriangleSoup, summary: &Summary) -> Result<Vec<u8>, RenderError> {
     let scene = Scene { positions: &soup.positions, faces: &soup.faces, ..Scene::default() };
-    let measure = summary.measure;
-    let mut high = summary.percentiles.p99;
-    if !high.is_finite() {
-        let finite = summary.values.iter().copied().filter(|x| x.is_finite());
-        high = finite.fold(measure.ideal(), f64::max);
-    }
-    let title =
-        format!("{}   mean {}   max {}", measure.name(), figure(summary.mean), figure(summary.max));
-    // An isometry has one colour, not the noise of its last digits.
-    let high = high.max(measure.ideal() + LEAST_RANGE);
-    let heat = HeatMap { low: measure.ideal(), high, title };
+    let heat = heat_of(summary);
     let options = |view| SurfaceOptions {
         view,
         paint: heat.paint(&summary.values.0),
@@ -40,6 +30,21 @@ pub(crate) fn heat(soup: &TriangleSoup, summary: &Summary) -> Result<Vec<u8>, Re
     let both = front.beside(&back)?;
     heat.with_legend(&both, &summary.values.0)?.write_png(&mut png)?;
     Ok(png)
+}
+
+/// The scale of colours that suits a measure.
+pub(crate) fn heat_of(summary: &Summary) -> HeatMap {
+    let measure = summary.measure;
+    let mut high = summary.percentiles.p99;
+    if !high.is_finite() {
+        let finite = summary.values.iter().copied().filter(|x| x.is_finite());
+        high = finite.fold(measure.ideal(), f64::max);
+    }
+    let title =
+        format!("{}   mean {}   max {}", measure.name(), figure(summary.mean), figure(summary.max));
+    // An isometry has one colour, not the noise of its last digits.
+    let high = high.max(measure.ideal() + LEAST_RANGE);
+    HeatMap { low: measure.ideal(), high, title }
 }
 
 /// The colours span at least this.
@@ -110,26 +115,83 @@ pub(crate) fn draw_quads(
     quads: &QuadMesh,
     irregular: &[IrregularVertex],
 ) -> Result<Vec<u8>, RenderError> {
-    let faces: Vec<[u32; 3]> =
-        quads.quads().iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    let mut edges: Vec<[u32; 2]> = quads
-        .quads()
-        .iter()
-        .flat_map(|quad| (0..4).map(|k| [quad[k], quad[(k + 1) % 4]]))
-        .map(|[a, b]| [a.min(b), a.max(b)])
-        .collect();
-    edges.sort_unstable();
-    edges.dedup();
-    let cones: Vec<(u32, i32)> = irregular.iter().map(|v| (v.vertex, v.index)).collect();
-    let scene = Scene {
-        positions: quads.positions(),
-        faces: &faces,
-        cones: &cones,
-        seams: &edges,
-        ..Scene::default()
-    };
-    let options = SurfaceOptions { paint: Paint::plain(), ..SurfaceOptions::default() };
+    let irregular: Vec<(u32, i32)> = irregular.iter().map(|v| (v.vertex, v.index)).collect();
+    let polygons = || quads.quads().iter().map(<[u32; 4]>::as_slice);
+    let net = Net::new(quads.positions(), polygons());
+    let image = net.draw(&irregular, Paint::plain(), View::Front)?;
     let mut file = Vec::new();
-    render_surface(&scene, &options)?.write_png(&mut file)?;
+    image.write_png(&mut file)?;
     Ok(file)
+}
+
+/// Draws polygons from both sides in the colours of a figure, with their edges, irregular vertices and a legend.
+///
+/// Irregular vertices come with their index: 4 less the edges there.
+pub(crate) fn draw_polygons<'a>(
+    positions: &[[f64; 3]],
+    polygons: impl Iterator<Item = &'a [u32]> + Clone,
+    irregular: &[(u32, i32)],
+    (heat, values): (&HeatMap, &[f64]),
+) -> Result<Vec<u8>, RenderError> {
+    let net = Net::new(positions, polygons);
+    let of_faces: Vec<f64> =
+        net.polygon_of_face.iter().filter_map(|&p| values.get(p as usize)).copied().collect();
+    let side = |view| net.draw(irregular, heat.paint(&of_faces), view);
+    let both = side(View::Front)?.beside(&side(View::Back)?)?;
+    let mut file = Vec::new();
+    heat.with_legend(&both, &of_faces)?.write_png(&mut file)?;
+    Ok(file)
+}
+
+/// Polygons as triangles and edges.
+struct Net<'a> {
+    positions: &'a [[f64; 3]],
+    faces: Vec<[u32; 3]>,
+    polygon_of_face: Vec<u32>,
+    edges: Vec<[u32; 2]>,
+}
+
+impl<'a> Net<'a> {
+    fn new<'b>(
+        positions: &'a [[f64; 3]],
+        polygons: impl Iterator<Item = &'b [u32]> + Clone,
+    ) -> Self {
+        let (faces, polygon_of_face) = match soup::triangulate(positions, polygons.clone()) {
+            Ok(split) => (split.faces, split.polygon_of_face),
+            // Polygons with a vertex twice can be drawn all the same.
+            Err(_) => fans(polygons.clone()),
+        };
+        let mut edges: Vec<[u32; 2]> = polygons
+            .flat_map(|polygon| (0..polygon.len()).map(move |k| (polygon, k)))
+            .map(|(polygon, k)| [polygon[k], polygon[(k + 1) % polygon.len()]])
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Self { positions, faces, polygon_of_face, edges }
+    }
+
+    fn draw(
+        &self,
+        irregular: &[(u32, i32)],
+        paint: Paint,
+        view: View,
+    ) -> Result<Image, RenderError> {
+        let scene = Scene {
+            positions: self.positions,
+            faces: &self.faces,
+            cones: irregular,
+            seams: &self.edges,
+            ..Scene::default()
+        };
+        render_surface(&scene, &SurfaceOptions { view, paint, ..SurfaceOptions::default() })
+    }
+}
+
+/// Triangles around the first corner of each polygon, and the polygon of each.
+fn fans<'a>(polygons: impl Iterator<Item = &'a [u32]>) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let fan = |(p, polygon): (usize, &'a [u32])| {
+        (2..polygon.len()).map(move |k| ([polygon[0], polygon[k - 1], polygon[k]], p as u32))
+    };
+    polygons.enumerate().flat_map(fan).unzip()
 }

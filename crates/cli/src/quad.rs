@@ -1,7 +1,7 @@
 //! `seamstress quad`.
 
 use crate::args::QuadArgs;
-use crate::extract::{quad_rows, quads_json, smoothed, tell_losses, write_quads};
+use crate::extract::{quad_rows, quads_json, tell_losses, write_quads};
 use crate::features::AlignedFeatures;
 use crate::input::LoadedMesh;
 use crate::integer::{grid_json, grid_text, integers_text, make_integer, make_seamless};
@@ -10,10 +10,11 @@ use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, Cost, VERSION};
+use crate::shape::{Shaped, Shaping};
 use crate::summary;
-use crate::text::{self, row};
+use crate::text::{self, counted, row};
 use seamstress::{IntegerOptions, IntegerSolution};
-use seamstress_quads::{ExtractOptions, Extraction, QuadConnectivity, QuadFaults, extract};
+use seamstress_quads::{Extraction, ManifoldError, QuadConnectivity, QuadFaults, manifold_quads};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
@@ -24,8 +25,11 @@ struct Product {
     integer: IntegerSolution,
     /// The features that edges of quads follow, if any were asked for.
     features: Option<AlignedFeatures>,
+    /// Coarser grids whose quads were no manifold.
+    refinements: usize,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
+    shaped: Shaped,
     picture: Option<Vec<u8>>,
 }
 
@@ -59,36 +63,47 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     let positions = &mesh.soup.positions;
     let start = make_seamless(&args.method, &args.features, &mesh, &source, &mut worker)?;
 
-    let options = IntegerOptions { size: args.size.grid(), ..IntegerOptions::default() };
-    let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
-    let integer = make_integer(&start, &options, advice, &mesh, &source, &mut worker)?;
+    let made = manifold_quads(&source, positions, args.size.grid(), |size| {
+        let options = IntegerOptions { size, ..IntegerOptions::default() };
+        let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
+        make_integer(&start, &options, advice, &mesh, &source, &mut worker)
+    })
+    .map_err(|error| no_quads(error, &mesh))?;
     worker.stop.lift_limit();
 
-    let no_quads = |text| Failure::NoQuads { file: mesh.path.clone(), text };
-    let mut extraction =
-        extract(&source, positions, integer.map.corner_uvs(), &ExtractOptions::default())
-            .map_err(|error| no_quads(error.to_string()))?;
+    let mut extraction = made.extraction;
     if !args.run.quiet {
         tell_losses(&extraction);
     }
-    let connectivity = extraction.mesh.connectivity();
-    if let Err(faults) = &connectivity {
-        return Err(Failure::Internal {
-            file: mesh.path.clone(),
-            text: format!("the quads are no manifold: {faults}"),
-        });
-    }
-    if args.smooth > 0 {
-        extraction.mesh = smoothed(args.smooth, &mesh, &extraction.mesh)?;
-    }
-    let picture = args.picture.is_some().then(|| {
-        let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
-        pictures::draw_quads(&extraction.mesh, &irregular.unwrap_or_default())
-    });
+    let features = start.features.as_ref().map_or(&[][..], |features| &features.kept);
+    let shaping = Shaping { raw: args.raw, smooth: args.smooth, features };
+    let shaped = shaping.apply(&mesh, &source, &mut extraction)?;
+    let picture = args
+        .picture
+        .is_some()
+        .then(|| pictures::draw_quads(&extraction.mesh, &made.connectivity.irregular_vertices()));
     let picture = picture
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: mesh.path.clone(), cause })?;
-    Ok(Product { mesh, integer, features: start.features, extraction, connectivity, picture })
+    Ok(Product {
+        mesh,
+        integer: made.integer,
+        features: start.features,
+        refinements: made.refinements,
+        extraction,
+        connectivity: Ok(made.connectivity),
+        shaped,
+        picture,
+    })
+}
+
+fn no_quads(error: ManifoldError<Failure>, mesh: &LoadedMesh) -> Failure {
+    let file = mesh.path.clone();
+    match error {
+        ManifoldError::Integer(failure) => failure,
+        ManifoldError::NoManifold(faults) => Failure::NoManifold { file, faults },
+        other => Failure::NoQuads { file, text: other.to_string() },
+    }
 }
 
 /// Writes everything, puts it in place and prints the summary.
@@ -120,6 +135,7 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "command": "quad",
         "options": {
             "size": args.size.grid(),
+            "raw": args.raw,
             "smooth": args.smooth,
             "repair": args.repair,
             "features": report::sources_json(&args.features),
@@ -135,7 +151,9 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "integer_certificate": integer.map.certificate(),
         "components": integer.components,
         "features": product.features.as_ref().map(AlignedFeatures::json),
+        "manifold_refinements": product.refinements,
         "quads": quads_json(&product.extraction, &product.connectivity),
+        "mended": product.shaped.json(),
         "files": plan.targets,
         "cost": cost,
     })
@@ -145,13 +163,19 @@ fn summary_text(args: &QuadArgs, plan: &Plan, product: &Product, cost: &Cost) ->
     let integer = &product.integer;
     let mut rows = summary::mesh_rows(&product.mesh);
     rows.extend(product.features.iter().flat_map(|f| summary::feature_rows(&f.asked)));
-    rows.push(row("grid", &grid_text(args.size.grid(), integer)));
+    let mut grid = grid_text(args.size.grid(), integer);
+    if product.refinements > 0 {
+        let times = counted(product.refinements, "time");
+        grid += &format!("; {times} finer for the quads to be a manifold");
+    }
+    rows.push(row("grid", &grid));
     if product.features.is_some() {
         rows.push(row("integers", &integers_text(integer.map.certificate())));
     }
     rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.extend(summary::distortion_rows(&integer.distortion));
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
+    rows.extend(product.shaped.row());
     rows.push(summary::cost_row(cost, std::iter::empty()));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();

@@ -1,30 +1,54 @@
 //! `seamstress quality`.
 
-use crate::args::QualityArgs;
+use crate::args::{QuadFigure, QualityArgs};
 use crate::input::LoadedMesh;
+use crate::measure::{TITLES, line, summary_line};
 use crate::outcome::{Failure, Status};
+use crate::output::{Kind, Plan, Target};
+use crate::pictures;
 use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
 use seamstress_io::{PolygonMesh, read_mesh};
-use seamstress_quads::quality::{QuadQuality, SurfaceDistance, measure, surface_distance};
+use seamstress_quads::quality::{
+    Distance, Orientation, QuadQuality, SurfaceDistance, angle_deviations, measure,
+    surface_distance,
+};
+use seamstress_render::HeatMap;
 use seamstress_surface::soup;
+use std::io::Write;
 use std::path::Path;
+
+/// How a mesh lies to its source.
+struct Compared {
+    distance: SurfaceDistance,
+    orientation: Orientation,
+}
 
 /// Runs the command.
 pub(crate) fn run(args: &QualityArgs) -> Result<Status, Failure> {
+    let mut inputs: Vec<&Path> = vec![&args.quads];
+    inputs.extend(args.source.as_deref());
+    let targets = args.picture.iter().map(|path| Target::new(Kind::Picture, path)).collect();
+    let plan = Plan::new(&inputs, None, targets)?;
     let read = read_mesh(&args.quads)?;
     if read.polygons.is_empty() {
         return Err(bad_mesh(&args.quads, "it has no faces"));
     }
     let quality = measure(&read.positions, read.polygons.iter());
-    let distance = match &args.source {
-        Some(source) => Some(distance(args, &read, source)?),
+    let compared = match &args.source {
+        Some(source) => Some(compare(args, &read, source)?),
         None => None,
     };
+    let mut batch = plan.begin()?;
+    for target in &plan.targets {
+        let picture = draw(args, &read, &quality)?;
+        batch.write(&target.path, |file| file.write_all(&picture))?;
+    }
+    batch.commit()?;
     text::print(&match args.json {
-        true => json_text(args, &quality, distance.as_ref()),
-        false => table(args, &quality, distance.as_ref()),
+        true => json_text(args, &quality, compared.as_ref()),
+        false => table(args, &quality, compared.as_ref()),
     })?;
     Ok(Status::Done)
 }
@@ -33,11 +57,7 @@ fn bad_mesh(file: &Path, text: &str) -> Failure {
     Failure::BadMesh { file: file.to_owned(), text: text.to_owned() }
 }
 
-fn distance(
-    args: &QualityArgs,
-    read: &PolygonMesh,
-    source: &Path,
-) -> Result<SurfaceDistance, Failure> {
+fn compare(args: &QualityArgs, read: &PolygonMesh, source: &Path) -> Result<Compared, Failure> {
     let triangles = soup::triangulate(&read.positions, read.polygons.iter()).map_err(|faults| {
         let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
         bad_mesh(&args.quads, &faults.join("; "))
@@ -45,30 +65,67 @@ fn distance(
     let source = LoadedMesh::load(source, false)?;
     let surface = (read.positions.as_slice(), triangles.faces.as_slice());
     let reference = (source.soup.positions.as_slice(), source.soup.faces.as_slice());
-    surface_distance(surface, reference, args.samples as usize)
-        .map_err(|error| bad_mesh(&source.path, &error.to_string()))
+    let distance = surface_distance(surface, reference, args.samples as usize)
+        .map_err(|error| bad_mesh(&source.path, &error.to_string()))?;
+    let orientation = Orientation::new(&read.positions, read.polygons.iter(), reference)
+        .map_err(|error| bad_mesh(&source.path, &error.to_string()))?;
+    Ok(Compared { distance, orientation })
 }
 
-fn json_text(
-    args: &QualityArgs,
-    quality: &QuadQuality,
-    distance: Option<&SurfaceDistance>,
-) -> String {
+/// The polygons in the colours of the figure asked for, one value each.
+fn draw(args: &QualityArgs, read: &PolygonMesh, quality: &QuadQuality) -> Result<Vec<u8>, Failure> {
+    let (values, heat) = match args.of {
+        QuadFigure::Angle => angle_heat(read),
+        QuadFigure::Measure(wanted) => {
+            let Some(measured) = quality.measures.iter().find(|m| m.measure == wanted) else {
+                let reason = quality.no_layout.as_deref().unwrap_or("there is no layout");
+                let text = format!("{} cannot be painted: {reason}", wanted.name());
+                return Err(bad_mesh(&args.quads, &text));
+            };
+            // The worse of a quad's two triangles.
+            let values = measured.values.0.chunks(2);
+            let values = values.map(|pair| pair.iter().copied().fold(f64::NAN, f64::max)).collect();
+            (values, pictures::heat_of(measured))
+        }
+    };
+    let vertices = quality.topology.irregular_vertices.iter();
+    let irregular: Vec<(u32, i32)> = vertices.map(|&(v, edges)| (v, 4 - edges as i32)).collect();
+    pictures::draw_polygons(
+        &read.positions,
+        read.polygons.iter(),
+        &irregular,
+        (&heat, values.as_slice()),
+    )
+    .map_err(|cause| Failure::NoPicture { file: args.quads.clone(), cause })
+}
+
+/// Right angles are dark, and this many degrees off them bright.
+const BRIGHT_DEVIATION: f64 = 45.0;
+
+fn angle_heat(read: &PolygonMesh) -> (Vec<f64>, HeatMap) {
+    let title = "deviation of angles, degrees".into();
+    let values = angle_deviations(&read.positions, read.polygons.iter());
+    (values, HeatMap { low: 0.0, high: BRIGHT_DEVIATION, title })
+}
+
+fn json_text(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>) -> String {
     let mut value = serde_json::to_value(quality).unwrap_or_default();
     if let Some(distortion) = &quality.distortion {
         value["distortion"] = report::distortion_json(distortion);
     }
+    value["measures"] = quality.measures.iter().map(report::measure_json).collect();
     value["seamstress"] = VERSION.into();
     value["command"] = "quality".into();
     value["input"] = args.quads.to_string_lossy().into();
-    if let (Some(distance), Some(source)) = (distance, &args.source) {
+    if let (Some(compared), Some(source)) = (compared, &args.source) {
         value["source"] = source.to_string_lossy().into();
-        value["distance"] = serde_json::to_value(distance).unwrap_or_default();
+        value["distance"] = serde_json::to_value(compared.distance).unwrap_or_default();
+        value["orientation"] = serde_json::to_value(compared.orientation).unwrap_or_default();
     }
     report::to_text(&value)
 }
 
-fn table(args: &QualityArgs, quality: &QuadQuality, distance: Option<&SurfaceDistance>) -> String {
+fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>) -> String {
     let mut rows = topology_rows(args, quality);
     rows.extend(shape_rows(quality));
     match (&quality.distortion, &quality.no_layout) {
@@ -76,10 +133,31 @@ fn table(args: &QualityArgs, quality: &QuadQuality, distance: Option<&SurfaceDis
         (None, Some(reason)) => rows.push(row("distortion", &format!("undefined: {reason}"))),
         (None, None) => {}
     }
-    if let (Some(distance), Some(source)) = (distance, &args.source) {
-        rows.extend(distance_rows(distance, source));
+    if let (Some(compared), Some(source)) = (compared, &args.source) {
+        rows.extend(distance_rows(&compared.distance, source));
+        rows.push(row("orientation", &orientation_text(&compared.orientation)));
+    }
+    if let Some(path) = &args.picture {
+        rows.push(row("written", &path.display().to_string()));
+    }
+    if !quality.measures.is_empty() {
+        rows.push(String::new());
+        rows.push(line(TITLES));
+        rows.extend(quality.measures.iter().map(|measured| summary_line(measured, |_, _| false)));
     }
     rows.join("\n")
+}
+
+fn orientation_text(orientation: &Orientation) -> String {
+    let corners = counted(orientation.turned_corners, "corner");
+    match orientation.inverted + orientation.crossed {
+        0 => format!("no face is inverted; {corners} turned against the source"),
+        _ => format!(
+            "{} inverted, {} crossed; {corners} turned against the source",
+            counted(orientation.inverted, "face"),
+            orientation.crossed
+        ),
+    }
 }
 
 fn topology_rows(args: &QualityArgs, quality: &QuadQuality) -> Vec<String> {
@@ -151,9 +229,12 @@ fn shape_rows(quality: &QuadQuality) -> Vec<String> {
 fn distance_rows(distance: &SurfaceDistance, source: &Path) -> Vec<String> {
     let share =
         |x: f64| format!("{} ({:.3} % of the diagonal)", figure(x), 100.0 * x / distance.diagonal);
+    let both = |d: &Distance| format!("largest {}, mean {}", figure(d.max), figure(d.mean));
     vec![
         row("source", &source.display().to_string()),
         row("Hausdorff", &share(distance.hausdorff)),
-        row("mean", &share(distance.mean)),
+        row("mean distance", &share(distance.mean)),
+        row("to source", &both(&distance.to_source)),
+        row("from source", &both(&distance.from_source)),
     ]
 }

@@ -1,14 +1,21 @@
 //! Quad meshes: from integer maps, laid out in the plane, and measured.
 
+mod badness;
 mod connectivity;
 pub mod extract;
 pub mod layout;
+mod manifold;
+pub mod mend;
 mod mesh;
 mod pinches;
 pub mod quality;
 pub mod smooth;
+mod surface;
+mod vector;
 
 pub use connectivity::{IrregularVertex, QuadConnectivity, QuadFault, QuadFaults};
 pub use extract::{ExtractError, ExtractOptions, Extraction, extract};
+pub use manifold::{ManifoldError, ManifoldQuads, manifold_quads};
+pub use mend::{MendOptions, Mended, mend};
 pub use mesh::{QuadMesh, QuadMeshError};
 pub use smooth::{SmoothError, SmoothOptions, Smoothed, smooth};

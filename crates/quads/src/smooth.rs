@@ -1,20 +1,18 @@
 //! Smoothing along a surface.
 
+use crate::badness;
+use crate::surface::Surface;
+use crate::vector::{Point, add};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
-use parry3d_f64::math::Vector;
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::TriMesh as Surface;
 use rayon::prelude::*;
-
-type Point = [f64; 3];
 
 /// How to smooth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmoothOptions {
     /// How often every vertex is moved.
     pub rounds: u32,
-    /// Edges of the quad mesh that stay where they are, by their ends; the boundary always does.
-    pub fixed: Vec<[u32; 2]>,
+    /// Vertices that stay where they are; those on the boundary always do.
+    pub fixed: Vec<u32>,
 }
 
 impl Default for SmoothOptions {
@@ -65,12 +63,10 @@ pub fn smooth(
     options: &SmoothOptions,
 ) -> Result<Smoothed, SmoothError> {
     let connectivity = mesh.connectivity()?;
-    let vertices = surface.0.iter().map(|&[x, y, z]| Vector::new(x, y, z)).collect();
-    let surface = Surface::new(vertices, surface.1.to_vec())
-        .map_err(|error| SmoothError::BadSurface(error.to_string()))?;
+    let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
     let mut is_fixed: Vec<bool> =
         (0..mesh.positions().len() as u32).map(|v| connectivity.is_boundary(v)).collect();
-    for &v in options.fixed.iter().flatten() {
+    for &v in &options.fixed {
         if let Some(is_fixed) = is_fixed.get_mut(v as usize) {
             *is_fixed = true;
         }
@@ -86,16 +82,11 @@ pub fn smooth(
     let mut refused = 0;
     for _ in 0..options.rounds {
         let targets: Vec<Point> =
-            free.par_iter().map(|&v| nearest(&surface, state.target(v))).collect();
+            free.par_iter().map(|&v| surface.nearest(state.target(v))).collect();
         refused = free.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
     }
     let positions = state.positions;
     Ok(Smoothed { mesh: QuadMesh::from_parts(positions, mesh.quads().to_vec()), refused })
-}
-
-fn nearest(surface: &Surface, at: Point) -> Point {
-    let found = surface.project_local_point(Vector::new(at[0], at[1], at[2]), false);
-    [found.point.x, found.point.y, found.point.z]
 }
 
 struct State<'a> {
@@ -129,41 +120,16 @@ impl State<'_> {
 
     fn worst_around(&self, v: u32) -> f64 {
         let quads = self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize]);
-        quads.map(|quad| badness(quad.map(|v| self.positions[v as usize]))).fold(0.0, f64::max)
+        quads
+            .map(|quad| badness::of_quad(quad.map(|v| self.positions[v as usize])))
+            .fold(0.0, f64::max)
     }
-}
-
-/// From 0 for right angles to 1 for a corner of 0 or 180 degrees, and above for reflex corners.
-fn badness(quad: [Point; 4]) -> f64 {
-    let normal = cross(sub(quad[2], quad[0]), sub(quad[3], quad[1]));
-    let corner = |k: usize| {
-        let (a, b) = (sub(quad[(k + 1) % 4], quad[k]), sub(quad[(k + 3) % 4], quad[k]));
-        let cosine = dot(a, b) / (dot(a, a) * dot(b, b)).sqrt();
-        let is_convex = dot(cross(a, b), normal) > 0.0;
-        if is_convex { cosine.abs() } else { 2.0 - cosine.abs() }
-    };
-    (0..4).map(corner).fold(0.0, |worst: f64, c| if c.is_nan() { 2.0 } else { worst.max(c) })
-}
-
-fn add(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|k| a[k] + b[k])
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::{dot, sub};
     use seamstress_testkit::{Rng, cube, disk_grid};
 
     fn quads_of(faces: &[[u32; 3]]) -> Vec<[u32; 4]> {
@@ -191,7 +157,7 @@ mod tests {
         assert!(after.iter().all(|p| p[2] == 0.0));
         let worst = |mesh: &QuadMesh| {
             let quads = mesh.quads().iter().map(|q| q.map(|v| mesh.positions()[v as usize]));
-            quads.map(badness).fold(0.0, f64::max)
+            quads.map(badness::of_quad).fold(0.0, f64::max)
         };
         assert!(worst(&smoothed.mesh) < worst(&before));
     }
@@ -202,25 +168,12 @@ mod tests {
         let mut positions = shape.positions.clone();
         positions[0] = [0.1, 0.0, 0.0];
         let mesh = QuadMesh::new(positions, quads_of(&shape.faces)).unwrap();
-        let fixed = mesh.quads().iter().map(|q| [q[0], q[2]]).collect();
+        let fixed = mesh.quads().iter().flat_map(|q| [q[0], q[2]]).collect();
         let options = SmoothOptions { rounds: 3, fixed };
         let smoothed = smooth(&mesh, (&shape.positions, &shape.faces), &options).unwrap();
-        let ends: Vec<u32> = options.fixed.iter().flatten().copied().collect();
-        for v in ends {
+        for &v in &options.fixed {
             assert_eq!(smoothed.mesh.positions()[v as usize], mesh.positions()[v as usize]);
         }
-    }
-
-    #[test]
-    fn badness_by_hand() {
-        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        assert_eq!(badness(square), 0.0);
-        let mut dart = square;
-        dart[2] = [0.25, 0.25, 0.0];
-        assert!(badness(dart) > 1.0);
-        let mut kite = square;
-        kite[2] = [0.5, 0.5, 0.0];
-        assert!((badness(kite) - 1.0).abs() < 1e-12);
     }
 
     #[test]

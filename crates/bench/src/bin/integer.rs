@@ -9,12 +9,11 @@
 use clap::Parser;
 use seamstress::integer::IntegerStats;
 use seamstress::{
-    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, MapOptions, SeamlessMap, Tolerance,
-    make_map, to_integer_map,
+    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, SeamlessMap, to_integer_map,
 };
+use seamstress_bench::maps::{seamless, write_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
-use seamstress_io::{MapObj, read_mesh, write_map_obj};
 use serde_json::Value;
 use std::error::Error;
 use std::fs::{self, File};
@@ -22,7 +21,6 @@ use std::io::{BufWriter, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use std::time::Instant;
 
 /// Makes integer maps of every mesh of a folder
 ///
@@ -104,7 +102,7 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
                 continue;
             }
         };
-        let (map, seconds) = match seamless(&name, &mesh, args) {
+        let (map, seconds) = match seamless(&name, &mesh, args.maps.as_deref()) {
             Ok(made) => made,
             Err(error) => {
                 failures.push(format!("* {name}: no seamless map: {error}"));
@@ -137,29 +135,6 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     }
     Ok(failures.is_empty() && tally.refuted == 0)
-}
-
-/// The seamless map, made or read, and the seconds it took to make.
-fn seamless(name: &str, mesh: &Mesh, args: &Args) -> Result<(SeamlessMap, f64), Box<dyn Error>> {
-    let kept = args.maps.as_ref().map(|folder| folder.join(format!("{name}.map.obj")));
-    if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
-        let read = read_mesh(path)?;
-        let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
-        let corners = uvs.corners.iter().map(|&c| uvs.coordinates[c as usize]).collect();
-        return Ok((
-            SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?,
-            0.0,
-        ));
-    }
-    let start = Instant::now();
-    let mut go_on = |_| ControlFlow::Continue(());
-    let options = MapOptions::default();
-    let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
-    let seconds = start.elapsed().as_secs_f64();
-    if let Some(path) = kept {
-        write_map(&path, mesh, Some(map.corner_uvs()))?;
-    }
-    Ok((map, seconds))
 }
 
 /// What came out of one run.
@@ -268,8 +243,8 @@ fn verify(
 ) -> Result<Verdict, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let [source, map] = ["source.obj", "map.obj"].map(|name| folder.path().join(name));
-    write_map(&source, mesh, None)?;
-    write_map(&map, mesh, Some(solution.map.corner_uvs()))?;
+    write_mesh(&source, mesh)?;
+    write_map(&map, mesh, solution.map.corner_uvs())?;
     let mut command = Command::new("python3");
     command.arg(script).args(["--integer", "--strict"]).arg(source).arg(map);
     let output = command.output()?;
@@ -278,26 +253,15 @@ fn verify(
     Ok(Verdict { is_good, flips: json["flipped_or_degenerate"].as_u64() })
 }
 
-/// Writes triangles, with UVs or without.
-fn write_map(path: &Path, mesh: &Mesh, uvs: Option<&[[f64; 2]]>) -> Result<(), Box<dyn Error>> {
+/// Writes triangles without UVs.
+fn write_mesh(path: &Path, mesh: &Mesh) -> Result<(), Box<dyn Error>> {
     let mut file = BufWriter::new(File::create(path)?);
-    let connectivity = &mesh.connectivity;
-    let faces: Vec<[u32; 3]> =
-        connectivity.faces().map(|f| connectivity.face_vertices(f).map(|v| v.0)).collect();
-    match uvs {
-        Some(corner_uvs) => {
-            let (positions, faces) = (&mesh.positions, &faces);
-            write_map_obj(&mut file, &MapObj { positions, faces, corner_uvs, comments: &[] })?;
-        }
-        None => {
-            for [x, y, z] in &mesh.positions {
-                writeln!(file, "v {x} {y} {z}")?;
-            }
-            for face in faces {
-                let [a, b, c] = face.map(|v| v + 1);
-                writeln!(file, "f {a} {b} {c}")?;
-            }
-        }
+    for [x, y, z] in &mesh.positions {
+        writeln!(file, "v {x} {y} {z}")?;
+    }
+    for face in mesh.faces() {
+        let [a, b, c] = face.map(|v| v + 1);
+        writeln!(file, "f {a} {b} {c}")?;
     }
     Ok(file.flush()?)
 }

@@ -23,7 +23,7 @@ pub(crate) use layout::LayoutArgs;
 pub(crate) use map::{MapArgs, Rounding};
 pub(crate) use measure::MeasureArgs;
 pub(crate) use quad::QuadArgs;
-pub(crate) use quads::{LayoutQuadsArgs, QuadLayoutMethod, QualityArgs};
+pub(crate) use quads::{LayoutQuadsArgs, QuadFigure, QuadLayoutMethod, QualityArgs};
 pub(crate) use repair_matchings::{Norm, RepairMatchingsArgs};
 pub(crate) use start::{Method, StartArgs};
 pub(crate) use texture::TextureArgs;

@@ -30,6 +30,10 @@ pub(crate) struct QuadArgs {
     #[command(flatten)]
     pub(crate) size: SizeArgs,
 
+    /// Leave every vertex where the map has it, and badly shaped quads as they are
+    #[arg(long)]
+    pub(crate) raw: bool,
+
     /// Move the vertices along the surface this many times, to even out angles and lengths
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=1000))]
     pub(crate) smooth: u32,

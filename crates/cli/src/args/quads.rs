@@ -1,6 +1,8 @@
 //! Arguments of the commands for quad meshes.
 
 use super::{EXIT_CODES, TextureArgs};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use seamstress::quality::Measure;
 use std::path::PathBuf;
 
 const LAYOUT_EXAMPLES: &str = "\
@@ -13,6 +15,8 @@ const QUALITY_EXAMPLES: &str = "\
 Examples:
   seamstress quality quads.obj
   seamstress quality quads.obj --source bunny.ply
+  seamstress quality quads.obj --picture angles.png
+  seamstress quality quads.obj --picture tau.png --of tau
   seamstress quality quads.obj --json | jq .angles";
 
 /// Lay a quad mesh out in the plane, every quad a unit square
@@ -55,10 +59,28 @@ pub(crate) enum QuadLayoutMethod {
     Conformal,
 }
 
+/// What can be painted on a quad mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum QuadFigure {
+    /// The largest deviation of a corner from the regular polygon's.
+    Angle,
+    /// A measure of the distortion of the layout.
+    Measure(Measure),
+}
+
+fn quad_figure() -> impl TypedValueParser<Value = QuadFigure> {
+    let names = std::iter::once("angle").chain(Measure::ALL.into_iter().map(Measure::name));
+    PossibleValuesParser::new(names).map(|text| {
+        let measure = Measure::ALL.into_iter().find(|measure| measure.name() == text);
+        measure.map_or(QuadFigure::Angle, QuadFigure::Measure)
+    })
+}
+
 /// Measure a quad mesh
 ///
 /// Irregular vertices, angles, edge lengths, and the distortion of the map to a layout in which every
-/// quad is a unit square; with a source, the distances between the two surfaces. Meshes with triangles or
+/// quad is a unit square, in every measure; with a source, the distances between the two surfaces both ways
+/// and quads that face the wrong way. Meshes with triangles or
 /// larger polygons are measured where the figures are defined.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = format!("{QUALITY_EXAMPLES}\n\n{EXIT_CODES}"))]
@@ -69,6 +91,14 @@ pub(crate) struct QualityArgs {
     /// The surface it was made from, to measure the distances to: OBJ, OFF, PLY or STL
     #[arg(long, value_name = "MESH")]
     pub(crate) source: Option<PathBuf>,
+
+    /// Draw the mesh from both sides, with its irregular vertices, in the colours of a figure
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) picture: Option<PathBuf>,
+
+    /// The figure that is painted: the largest deviation of an angle, or a distortion of the layout
+    #[arg(long, value_name = "FIGURE", value_parser = quad_figure(), default_value = "angle", requires = "picture")]
+    pub(crate) of: QuadFigure,
 
     /// Points sampled on each surface, about
     #[arg(

@@ -124,3 +124,27 @@ fn quads_reach_an_aligned_boundary() {
     assert_eq!(report["integer_certificate"]["isoline_edges"], 20);
     assert_eq!(report["integer_certificate"]["integral_corners"], 4);
 }
+
+#[test]
+fn badly_shaped_quads_are_mended_unless_the_map_is_wanted_as_it_is() {
+    let folder = Folder::new();
+    folder.write_obj("bracket.obj", &kit::subdivide(&kit::l_bracket()));
+    let quality = |name: &str, more: &[&str]| {
+        let arguments = ["quad", "bracket.obj", "--quads", "400", "-o", name, "--json"];
+        let report = json(&folder.expect(0, &[&arguments[..], more].concat()).stdout);
+        let arguments = ["quality", name, "--source", "bracket.obj", "--json"];
+        (report, json(&folder.expect(0, &arguments).stdout))
+    };
+    let (raw_report, raw) = quality("raw.obj", &["--raw"]);
+    let (report, mended) = quality("q.obj", &[]);
+    assert_eq!(raw_report["mended"]["moved"], 0);
+    assert_eq!(raw["topology"]["irregular"], mended["topology"]["irregular"]);
+    assert_eq!(mended["orientation"]["inverted"], 0);
+    let range = |of: &Value| {
+        of["angles"]["max"].as_f64().unwrap() - of["angles"]["min"].as_f64().unwrap()
+    };
+    match report["mended"]["moved"].as_u64() {
+        Some(0) => assert_eq!(folder.read("raw.obj"), folder.read("q.obj")),
+        _ => assert!(range(&mended) < range(&raw), "{mended} {raw}"),
+    }
+}

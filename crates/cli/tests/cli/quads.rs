@@ -2,6 +2,7 @@
 
 use crate::harness::{Folder, lines_of};
 use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// The squares of a box of 2 x 1 x 1.
 const BOX: &str = "\
@@ -101,4 +102,78 @@ fn quality_of_other_polygons_leaves_the_layout_undefined() {
     assert!(run.stdout.contains("polygon 1 has 3 corners"), "{}", run.stdout);
     folder.write("points.obj", "v 0 0 0\n");
     folder.expect(1, &["quality", "points.obj"]);
+}
+
+#[test]
+fn pictures_show_angles_of_any_polygons_and_distortion_of_quads() {
+    let folder = with_box();
+    let picture = |arguments: &[&str]| {
+        folder.expect(0, arguments);
+        let png = std::fs::read(folder.path("p.png")).unwrap();
+        assert_eq!(&png[1..4], b"PNG");
+        png
+    };
+    let angles = picture(&["quality", "box.obj", "--picture", "p.png"]);
+    let tau = picture(&["quality", "box.obj", "--picture", "p.png", "--of", "tau"]);
+    assert_ne!(angles, tau);
+    // A triangle on top: angles are defined, the layout is not.
+    folder.write("mixed.obj", &BOX.replace("f 7 8 11 10\n", "f 7 8 11\nf 7 11 10\n"));
+    picture(&["quality", "mixed.obj", "--picture", "p.png"]);
+    let run = folder.expect(1, &["quality", "mixed.obj", "--picture", "q.png", "--of", "tau"]);
+    assert!(run.stderr.contains("tau cannot be painted: polygon 2 has 3 corners"), "{run:?}");
+    assert!(!folder.names().contains(&"q.png".to_owned()));
+}
+
+#[test]
+fn quads_that_face_the_wrong_way_are_told() {
+    let folder = with_box();
+    let report = |file: &str| {
+        let arguments = ["quality", file, "--source", "box.obj", "--json", "--samples", "100"];
+        json(&folder.expect(0, &arguments).stdout)
+    };
+    assert_eq!(report("box.obj")["orientation"]["inverted"], 0);
+    assert_eq!(report("box.obj")["measures"].as_array().unwrap().len(), 8);
+    folder.write("turned.obj", &BOX.replace("f 7 8 11 10\n", "f 10 11 8 7\n"));
+    assert_eq!(report("turned.obj")["orientation"]["inverted"], 1);
+}
+
+/// Quad meshes of other programs.
+#[test]
+fn quad_meshes_of_the_collection_are_measured_and_laid_out_exactly() {
+    let Some(collection) = collection() else { return };
+    let folder = Folder::new();
+    for (name, irregular) in [
+        ("fertility_quad.off", 48),
+        ("gargoyle_quadriflow.obj", 180),
+        ("inspired_mesh_quads_smooth.off", 0),
+    ] {
+        let quads = collection.join(name).to_string_lossy().into_owned();
+        let quality = json(&folder.expect(0, &["quality", &quads, "--json"]).stdout);
+        let by_valence = quality["topology"]["irregular"].as_object().unwrap();
+        let count: u64 = by_valence.values().filter_map(Value::as_u64).sum();
+        assert_eq!(count, irregular, "{name}");
+        let arguments = ["layout-quads", &quads, "-o", "map.obj", "--json"];
+        let layout = json(&folder.expect(0, &arguments).stdout);
+        assert_eq!(layout["integer_error"], 0.0, "{name}");
+        assert_eq!(layout["distortion"]["tau"], quality["distortion"]["tau"], "{name}");
+        let conformal = [&arguments[..], &["--method", "conformal"]].concat();
+        let error = json(&folder.expect(0, &conformal).stdout)["integer_error"].as_f64().unwrap();
+        assert!(error > 0.0 && error < 1e-6, "{name}: {error}");
+    }
+    for (name, others) in [("suzanne.obj", "3"), ("spot_control_mesh.obj", "5")] {
+        let path = collection.join(name).to_string_lossy().into_owned();
+        let quality = json(&folder.expect(0, &["quality", &path, "--json"]).stdout);
+        assert!(quality["topology"]["polygons"][others].as_u64().unwrap() > 0);
+        assert!(quality["distortion"].is_null() && quality["angles"]["min"].is_number());
+    }
+}
+
+fn collection() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
+    let folder = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
+    if !folder.is_dir() {
+        println!("skipped: there is no folder {}", folder.display());
+        return None;
+    }
+    Some(folder)
 }

@@ -1,16 +1,18 @@
 //! Quality of quad meshes, section 2 of the seed: shape, irregular vertices, distance to a source.
 
 mod distance;
+mod orientation;
 mod shape;
 mod topology;
 
 pub use distance::{Distance, DistanceError, SurfaceDistance, surface_distance};
-pub use shape::{Angles, EdgeLengths};
+pub use orientation::{BadSurface, Orientation};
+pub use shape::{Angles, EdgeLengths, angle_deviations};
 pub use topology::Topology;
 
 use crate::QuadMesh;
 use crate::layout::{LayoutError, lay_out_squares};
-use seamstress::quality::{Distortion, distortion};
+use seamstress::quality::{Distortion, SingularValues, Summary, measure_all};
 use seamstress_surface::Metric;
 
 /// Figures of a polygon mesh, quads above all.
@@ -26,6 +28,9 @@ pub struct QuadQuality {
     /// Distortion of the map from the mesh to its layout of unit squares (section 7), in all that is
     /// invariant to scale; `None` if there is no such layout.
     pub distortion: Option<Distortion>,
+    /// The same in every measure, with a value for each of the two triangles `2 q` and `2 q + 1` of quad `q`;
+    /// empty if there is no such layout.
+    pub measures: Vec<Summary>,
     /// Why there is no layout.
     pub no_layout: Option<String>,
 }
@@ -38,15 +43,16 @@ pub fn measure<'a>(
     positions: &[[f64; 3]],
     polygons: impl Iterator<Item = &'a [u32]> + Clone,
 ) -> QuadQuality {
-    let (distortion, no_layout) = match layout_distortion(positions, polygons.clone()) {
-        Ok(distortion) => (Some(distortion), None),
+    let (singular, no_layout) = match layout_distortion(positions, polygons.clone()) {
+        Ok(singular) => (Some(singular), None),
         Err(reason) => (None, Some(reason)),
     };
     QuadQuality {
         topology: Topology::new(positions.len(), polygons.clone()),
         angles: Angles::new(positions, polygons.clone()),
         edge_lengths: EdgeLengths::new(positions, polygons),
-        distortion,
+        distortion: singular.as_ref().map(Distortion::new),
+        measures: singular.as_ref().map(measure_all).unwrap_or_default(),
         no_layout,
     }
 }
@@ -54,7 +60,7 @@ pub fn measure<'a>(
 fn layout_distortion<'a>(
     positions: &[[f64; 3]],
     polygons: impl Iterator<Item = &'a [u32]>,
-) -> Result<Distortion, String> {
+) -> Result<SingularValues, String> {
     let quads: Result<Vec<[u32; 4]>, _> = polygons
         .enumerate()
         .map(|(i, polygon)| {
@@ -65,5 +71,5 @@ fn layout_distortion<'a>(
     let quads = QuadMesh::new(positions.to_vec(), quads?).map_err(|error| error.to_string())?;
     let layout = lay_out_squares(&quads).map_err(|error: LayoutError| error.to_string())?;
     let metric = Metric::from_positions(&layout.mesh, positions);
-    Ok(distortion(&layout.mesh, &metric, &layout.corner_uvs))
+    Ok(SingularValues::new(&layout.mesh, &metric, &layout.corner_uvs))
 }

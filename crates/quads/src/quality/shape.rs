@@ -1,5 +1,6 @@
 //! Shape of polygons: angles and edge lengths.
 
+use crate::vector::{cross, dot, norm, sub, unit, vector_area};
 use std::collections::BTreeSet;
 
 /// Angles at the corners of polygons, in degrees.
@@ -61,15 +62,26 @@ impl Angles {
     }
 }
 
+/// The largest deviation of a corner from the angle of the regular polygon, degrees, for each polygon; not a
+/// number where an edge has no length.
+pub fn angle_deviations<'a>(
+    positions: &[[f64; 3]],
+    polygons: impl Iterator<Item = &'a [u32]>,
+) -> Vec<f64> {
+    let deviation = |polygon: &[u32]| {
+        let points: Vec<[f64; 3]> = polygon.iter().map(|&v| positions[v as usize]).collect();
+        let regular = 180.0 - 360.0 / points.len() as f64;
+        let angles = polygon_angles(&points).into_iter();
+        angles.map(|a| a.map(|a| (a - regular).abs())).try_fold(0.0, |m: f64, a| Some(m.max(a?)))
+    };
+    polygons.map(|polygon| deviation(polygon).unwrap_or(f64::NAN)).collect()
+}
+
 /// Angle at each corner, degrees between 0 and 360; none where an edge has no length.
 fn polygon_angles(points: &[[f64; 3]]) -> Vec<Option<f64>> {
     let n = points.len();
     let edge = |k: usize| unit(sub(points[(k + 1) % n], points[k % n]));
-    let mut normal = [0.0; 3];
-    for k in 1..n.saturating_sub(1) {
-        let part = cross(sub(points[k], points[0]), sub(points[k + 1], points[0]));
-        normal = [0, 1, 2].map(|i| normal[i] + part[i]);
-    }
+    let normal = vector_area(points);
     (0..n)
         .map(|k| {
             let (out, back) = (edge(k)?, edge(k + n - 1)?.map(|x| -x));
@@ -105,28 +117,6 @@ impl EdgeLengths {
     }
 }
 
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Length without overflow of the squares.
-fn norm(a: [f64; 3]) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
-}
-
-fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let length = norm(a);
-    (length > 0.0).then(|| a.map(|x| x / length))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,6 +125,15 @@ mod tests {
         let positions: Vec<[f64; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
         let polygon: Vec<u32> = (0..points.len() as u32).collect();
         Angles::new(&positions, std::iter::once(polygon.as_slice()))
+    }
+
+    #[test]
+    fn deviations_are_from_the_regular_polygon() {
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let polygons: [&[u32]; 3] = [&[0, 1, 2, 3], &[0, 1, 2], &[0, 0, 1]];
+        let deviations = angle_deviations(&positions, polygons.into_iter());
+        assert!(deviations[0] < 1e-12 && (deviations[1] - 30.0).abs() < 1e-12);
+        assert!(deviations[2].is_nan());
     }
 
     #[test]

@@ -19,6 +19,9 @@ pub struct Topology {
     pub bad_edges: usize,
     /// Vertices off the boundary whose number of edges is not four, by that number.
     pub irregular: BTreeMap<usize, usize>,
+    /// These vertices and their numbers of edges, ascending.
+    #[serde(skip)]
+    pub irregular_vertices: Vec<(u32, usize)>,
     /// Vertices on the boundary by number of polygons; two is regular.
     pub boundary_vertices: BTreeMap<usize, usize>,
 }
@@ -58,12 +61,14 @@ impl Topology {
             }
         }
         let (mut irregular, mut boundary_vertices) = (BTreeMap::new(), BTreeMap::new());
+        let mut irregular_vertices = Vec::new();
         let used = |v: &usize| polygons_at[*v] > 0;
         for v in (0..n_vertices).filter(used) {
             if on_boundary[v] {
                 *boundary_vertices.entry(polygons_at[v]).or_insert(0) += 1;
             } else if edges_at[v] != 4 {
                 *irregular.entry(edges_at[v]).or_insert(0) += 1;
+                irregular_vertices.push((v as u32, edges_at[v]));
             }
         }
         let vertices = (0..n_vertices).filter(used).count();
@@ -76,6 +81,7 @@ impl Topology {
             boundary_edges,
             bad_edges,
             irregular,
+            irregular_vertices,
             boundary_vertices,
         }
     }
@@ -99,6 +105,7 @@ mod tests {
         assert_eq!((topology.vertices, topology.edges), (8, 12));
         assert_eq!(topology.euler_characteristic, 2);
         assert_eq!(topology.irregular, BTreeMap::from([(3, 8)]));
+        assert_eq!(topology.irregular_vertices, (0..8).map(|v| (v, 3)).collect::<Vec<_>>());
         assert_eq!((topology.boundary_edges, topology.bad_edges), (0, 0));
     }
 

@@ -1,0 +1,271 @@
+//! Quad meshes of many meshes at several counts of quads, checked and measured.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the table and its progress are what this program is for"
+)]
+
+mod check;
+mod order;
+
+use clap::Parser;
+use seamstress::{GridSize, IntegerOptions, SeamlessMap, to_integer_map};
+use seamstress_bench::maps::seamless;
+use seamstress_bench::markdown::Table;
+use seamstress_bench::meshes::{self, Mesh};
+use seamstress_quads::quality::{
+    Angles, EdgeLengths, Orientation, SurfaceDistance, surface_distance,
+};
+use seamstress_quads::{MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth};
+use seamstress_surface::soup;
+use std::error::Error;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Makes quad meshes of every mesh of a folder, checks and measures them
+///
+/// Of each, the quads must be an oriented manifold. Those of a closed mesh must have its topology, be as many as
+/// the area of the integer map, and have the map's cones as irregular vertices; those of an open one are trimmed,
+/// and have no other irregular vertices. No quad may be inverted. All this is checked without the code that made
+/// the quads. Exit code 1 if anything fails.
+#[derive(Debug, Parser)]
+struct Args {
+    /// The folder of meshes; its subfolders are left out
+    folder: PathBuf,
+
+    /// Quads asked for
+    #[arg(long, value_delimiter = ',', default_values_t = [500.0, 2500.0])]
+    quads: Vec<f64>,
+
+    /// Take only the files whose names contain one of these
+    #[arg(long, value_name = "TEXT", value_delimiter = ',')]
+    only: Vec<String>,
+
+    /// Leave out meshes of more triangles
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    most_triangles: usize,
+
+    /// Leave the vertices where the map has them, with badly shaped quads as they are
+    #[arg(long)]
+    raw: bool,
+
+    /// Smooth the quads along the surface this many times
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    smooth: u32,
+
+    /// Points sampled on each surface for the distances, about
+    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    samples: usize,
+
+    /// Keep the seamless maps in this folder, and take those that are there
+    #[arg(long, value_name = "DIR")]
+    maps: Option<PathBuf>,
+
+    /// Write the table to this file as well
+    #[arg(long, value_name = "TABLE.md")]
+    out: Option<PathBuf>,
+}
+
+const TITLES: [&str; 13] = [
+    "mesh",
+    "triangles",
+    "asked",
+    "quads",
+    "trimmed",
+    "irregular",
+    "angles",
+    "mean off 90",
+    "turned, crossed, inverted",
+    "edges +-%",
+    "Hausdorff %",
+    "mean %",
+    "check",
+];
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether every mesh gave quads that pass every check.
+fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+    let mut table = Table::new(TITLES);
+    let mut orders =
+        Table::new(["mesh", "counts", "order of the Hausdorff distance", "of the mean"]);
+    let mut failures = Vec::new();
+    for path in meshes::list(&args.folder, None)? {
+        let name = meshes::name(&path);
+        if !(args.only.is_empty() || args.only.iter().any(|text| name.contains(text))) {
+            continue;
+        }
+        let mesh = match meshes::load(&path) {
+            Ok(mesh) if mesh.connectivity.n_faces() <= args.most_triangles => mesh,
+            Ok(_) => continue,
+            Err(error) => {
+                eprintln!("refused: {error}");
+                continue;
+            }
+        };
+        let map = match seamless(&name, &mesh, args.maps.as_deref()) {
+            Ok((map, _)) => map,
+            Err(error) => {
+                failures.push(format!("* {name}: no seamless map: {error}"));
+                continue;
+            }
+        };
+        let mut rows = Vec::new();
+        for &asked in &args.quads {
+            match measure(&mesh, &map, asked, args) {
+                Ok(row) => {
+                    let cells = row.cells(&name, &mesh);
+                    eprintln!("| {} |", cells.join(" | "));
+                    table.push(cells);
+                    let told =
+                        row.faults.iter().map(|fault| format!("* {name} at {asked}: {fault}"));
+                    failures.extend(told);
+                    rows.push(row);
+                }
+                Err(error) => {
+                    eprintln!("{name} at {asked}: {error}");
+                    failures.push(format!("* {name} at {asked}: {error}"));
+                }
+            }
+        }
+        orders.push(order_cells(&name, &rows));
+    }
+    let mut text = format!("{table}\n");
+    if args.quads.len() > 1 {
+        text += &format!("{orders}\n");
+    }
+    match failures.as_slice() {
+        [] => text += "Every check passed.\n",
+        _ => text += &format!("Failed:\n\n{}\n", failures.join("\n")),
+    }
+    print!("{text}");
+    if let Some(path) = &args.out {
+        fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    }
+    Ok(failures.is_empty())
+}
+
+/// The quads of one run, measured.
+struct Row {
+    asked: f64,
+    quads: usize,
+    trimmed: usize,
+    irregular: usize,
+    angles: Angles,
+    orientation: Orientation,
+    lengths: EdgeLengths,
+    distance: SurfaceDistance,
+    faults: Vec<String>,
+}
+
+fn measure(mesh: &Mesh, map: &SeamlessMap, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+    let (positions, faces) = (mesh.positions.as_slice(), mesh.faces());
+    let source = (positions, faces.as_slice());
+    let size = GridSize::Quads(asked);
+    let made = manifold_quads(&mesh.connectivity, positions, size, |size| {
+        let options = IntegerOptions { size, ..Default::default() };
+        let mut go_on = |_| ControlFlow::Continue(());
+        to_integer_map(&mesh.connectivity, positions, map, &options, &mut go_on)
+    })?;
+    let (integer, extraction) = (made.integer.map, made.extraction);
+
+    let counts = check::count(extraction.mesh.quads())?;
+    let (made, quads) = (extraction.mesh.positions(), extraction.mesh.quads());
+    let mut faults = check::faults(mesh, integer.seamless(), made, quads, &counts);
+    let quads = match args.raw {
+        true => extraction.mesh,
+        false => mended(&extraction.mesh, source)?,
+    };
+    let quads = smoothed(quads, source, args.smooth)?;
+
+    let polygons = || quads.quads().iter().map(<[u32; 4]>::as_slice);
+    let orientation = Orientation::new(quads.positions(), polygons(), source)?;
+    let inverted = orientation.inverted + orientation.crossed;
+    if inverted > 0 {
+        faults.push(format!("{inverted} quads are inverted"));
+    }
+    let triangles = soup::triangulate(quads.positions(), polygons())
+        .map_err(|_| "the quads cannot be split into triangles")?;
+    let halves = (quads.positions(), triangles.faces.as_slice());
+    Ok(Row {
+        asked,
+        quads: quads.quads().len(),
+        trimmed: extraction.trimmed,
+        irregular: counts.irregular.len(),
+        angles: Angles::new(quads.positions(), polygons()),
+        orientation,
+        lengths: EdgeLengths::new(quads.positions(), polygons()),
+        distance: surface_distance(halves, source, args.samples)?,
+        faults,
+    })
+}
+
+fn mended(
+    quads: &QuadMesh,
+    source: (&[[f64; 3]], &[[u32; 3]]),
+) -> Result<QuadMesh, Box<dyn Error>> {
+    let start = Instant::now();
+    let mended = mend(quads, source, &MendOptions::default())?;
+    eprintln!("mended in {:.2} s: {} vertices moved", start.elapsed().as_secs_f64(), mended.moved);
+    Ok(mended.mesh)
+}
+
+fn smoothed(
+    quads: QuadMesh,
+    source: (&[[f64; 3]], &[[u32; 3]]),
+    rounds: u32,
+) -> Result<QuadMesh, Box<dyn Error>> {
+    if rounds == 0 {
+        return Ok(quads);
+    }
+    let start = Instant::now();
+    let options = SmoothOptions { rounds, ..SmoothOptions::default() };
+    let smoothed = smooth(&quads, source, &options)?.mesh;
+    eprintln!("smoothed in {:.2} s", start.elapsed().as_secs_f64());
+    Ok(smoothed)
+}
+
+impl Row {
+    fn cells(&self, name: &str, mesh: &Mesh) -> Vec<String> {
+        let share = |x: f64| 100.0 * x / self.distance.diagonal;
+        let (to, from) = (self.distance.to_source, self.distance.from_source);
+        let o = &self.orientation;
+        vec![
+            name.to_owned(),
+            mesh.connectivity.n_faces().to_string(),
+            format!("{:.0}", self.asked),
+            self.quads.to_string(),
+            self.trimmed.to_string(),
+            self.irregular.to_string(),
+            format!("{:.0}-{:.0}", self.angles.min, self.angles.max),
+            format!("{:.1}", self.angles.mean_deviation),
+            format!("{}, {}, {}", o.turned_corners, o.crossed, o.inverted),
+            format!("{:.0}", 100.0 * self.lengths.variation),
+            format!("{:.2}, {:.2}", share(to.max), share(from.max)),
+            format!("{:.3}, {:.3}", share(to.mean), share(from.mean)),
+            if self.faults.is_empty() { "ok".into() } else { "FAIL".into() },
+        ]
+    }
+}
+
+fn order_cells(name: &str, rows: &[Row]) -> Vec<String> {
+    let slope = |of: fn(&SurfaceDistance) -> f64| {
+        let points: Vec<_> = rows.iter().map(|r| (r.lengths.mean, of(&r.distance))).collect();
+        order::slope(&points).map_or("-".into(), |order| format!("{order:.2}"))
+    };
+    let counts: Vec<String> = rows.iter().map(|row| row.quads.to_string()).collect();
+    vec![name.to_owned(), counts.join(", "), slope(|d| d.hausdorff), slope(|d| d.mean)]
+}

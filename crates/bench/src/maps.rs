@@ -1,0 +1,51 @@
+//! Seamless maps of meshes, made once and kept.
+
+use crate::meshes::Mesh;
+use seamstress::{MapOptions, SeamlessMap, Tolerance, make_map};
+use seamstress_io::{MapObj, read_mesh, write_map_obj};
+use std::error::Error;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+/// The seamless map of a mesh, and the seconds it took: read from the folder if it is there, else made with
+/// the options as they are, and kept in the folder.
+///
+/// # Errors
+/// If there is no map, or a file cannot be read or written.
+pub fn seamless(
+    name: &str,
+    mesh: &Mesh,
+    folder: Option<&Path>,
+) -> Result<(SeamlessMap, f64), Box<dyn Error>> {
+    let kept = folder.map(|folder| folder.join(format!("{name}.map.obj")));
+    if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
+        let read = read_mesh(path)?;
+        let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
+        let corners = uvs.corners.iter().map(|&c| uvs.coordinates[c as usize]).collect();
+        let map = SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?;
+        return Ok((map, 0.0));
+    }
+    let start = Instant::now();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let options = MapOptions::default();
+    let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(path) = kept {
+        write_map(&path, mesh, map.corner_uvs())?;
+    }
+    Ok((map, seconds))
+}
+
+/// Writes triangles with their UVs.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_map(path: &Path, mesh: &Mesh, corner_uvs: &[[f64; 2]]) -> Result<(), Box<dyn Error>> {
+    let mut file = BufWriter::new(File::create(path)?);
+    let (positions, faces) = (&mesh.positions, &mesh.faces());
+    write_map_obj(&mut file, &MapObj { positions, faces, corner_uvs, comments: &[] })?;
+    Ok(file.flush()?)
+}

@@ -1,0 +1,325 @@
+//! Mending the worst quads along a surface.
+
+use crate::badness;
+use crate::smooth::SmoothError;
+use crate::surface::{Surface, distance_to_triangle};
+use crate::vector::{Point, add, cross, dot, norm, scale, sub, unit};
+use crate::{QuadConnectivity, QuadMesh};
+use rayon::prelude::*;
+
+/// What to mend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MendOptions {
+    /// Quads with a corner further from a right angle than this are mended, degrees.
+    pub deviation: f64,
+    /// How often each vertex of such quads is moved, at most; irregular ones as often again.
+    pub rounds: u32,
+    /// Vertices that stay where they are; those on the boundary always do.
+    pub fixed: Vec<u32>,
+}
+
+impl Default for MendOptions {
+    fn default() -> Self {
+        Self { deviation: 45.0, rounds: 40, fixed: Vec::new() }
+    }
+}
+
+/// A mended mesh.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Mended {
+    /// The mesh, with the quads as they were.
+    pub mesh: QuadMesh,
+    /// Vertices that were moved.
+    pub moved: usize,
+    /// The largest distance of a vertex from where it was, mesh units.
+    pub largest_move: f64,
+}
+
+/// The shape of the quads around a vertex is the sum of this power of their corners' badness: high enough
+/// for the worst to lead, low enough for the others to have a say.
+const POWER: i32 = 8;
+/// Lengths tried of a move, as parts of the mean edge at the vertex.
+const STEPS: [f64; 4] = [0.4, 0.2, 0.08, 0.03];
+/// Directions tried.
+const DIRECTIONS: usize = 8;
+/// A move has to gain this part of the shape's badness.
+const LEAST_GAIN: f64 = 1e-3;
+/// The quads around a vertex stay this close to the point it comes from, as a part of the mean edge there: no
+/// tip or crease is cut off.
+const STRAY: f64 = 0.1;
+/// Normals before and after a move have at least this cosine: beyond lies the other side of a thin wall.
+const OTHER_SIDE: f64 = -0.7;
+
+/// Moves the vertices of badly shaped quads along a surface until their corners are better.
+///
+/// Where a quad is turned against the surface, or has a corner further from a right angle than asked for,
+/// its vertices are moved: each to the best of some points around it, projected to the surface, by the
+/// badness of all corners around it. No quad becomes worse than it was, or than the bound, and the quads
+/// stay near the point each vertex comes from. All other vertices stay, and boundary and fixed ones;
+/// irregular ones are moved only when the others did not help.
+///
+/// Vertices are moved one by one in their order: the result does not depend on the number of threads.
+///
+/// # Errors
+/// If the quads are no manifold or the surface has no triangle.
+pub fn mend(
+    mesh: &QuadMesh,
+    surface: (&[Point], &[[u32; 3]]),
+    options: &MendOptions,
+) -> Result<Mended, SmoothError> {
+    let connectivity = mesh.connectivity()?;
+    let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
+    let n_vertices = mesh.positions().len() as u32;
+    let mut may_move: Vec<bool> = (0..n_vertices)
+        .map(|v| connectivity.valence(v) > 0 && !connectivity.is_boundary(v))
+        .collect();
+    let irregular = connectivity.irregular_vertices();
+    for &v in &options.fixed {
+        if let Some(may_move) = may_move.get_mut(v as usize) {
+            *may_move = false;
+        }
+    }
+    let positions = mesh.positions().to_vec();
+    let normals = positions.par_iter().map(|&p| surface.normal(p)).collect();
+    let bound = options.deviation.to_radians().sin();
+    let (connectivity, quads) = (&connectivity, mesh.quads());
+    let homes = mesh.positions();
+    let mut state =
+        State { connectivity, quads, surface: &surface, homes, positions, normals, bound };
+
+    // Without irregular vertices, then with them. Only where something has changed can be a gain.
+    let mut is_due = may_move.clone();
+    irregular.iter().for_each(|irregular| is_due[irregular.vertex as usize] = false);
+    let mut may_move_now = is_due.clone();
+    for round in 0..2 * options.rounds {
+        if round == options.rounds {
+            may_move_now.clone_from(&may_move);
+            is_due.clone_from(&may_move);
+        }
+        let due: Vec<u32> = (0..n_vertices).filter(|&v| is_due[v as usize]).collect();
+        let bad: Vec<u32> = due.into_par_iter().filter(|&v| state.worst(v) > bound).collect();
+        is_due.fill(false);
+        for v in bad {
+            if state.improve(v) {
+                for w in state.quads_around(v).flatten() {
+                    is_due[w as usize] = may_move_now[w as usize];
+                }
+            }
+        }
+    }
+    let moves: Vec<f64> = state
+        .positions
+        .iter()
+        .zip(mesh.positions())
+        .map(|(&to, &from)| norm(sub(to, from)))
+        .collect();
+    Ok(Mended {
+        moved: moves.iter().filter(|&&length| length > 0.0).count(),
+        largest_move: moves.into_iter().fold(0.0, f64::max),
+        mesh: QuadMesh::from_parts(state.positions, mesh.quads().to_vec()),
+    })
+}
+
+struct State<'a> {
+    connectivity: &'a QuadConnectivity,
+    quads: &'a [[u32; 4]],
+    surface: &'a Surface,
+    /// Where the vertices come from.
+    homes: &'a [Point],
+    positions: Vec<Point>,
+    /// Of the surface, where the vertices are.
+    normals: Vec<Point>,
+    bound: f64,
+}
+
+/// How bad the corners around a vertex are.
+#[derive(Clone, Copy)]
+struct Shape {
+    worst: f64,
+    sum: f64,
+}
+
+impl State<'_> {
+    fn quads_around(&self, v: u32) -> impl Iterator<Item = [u32; 4]> + '_ {
+        self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize])
+    }
+
+    fn worst(&self, v: u32) -> f64 {
+        self.shape(v, self.positions[v as usize], self.normals[v as usize]).worst
+    }
+
+    /// The shape around a vertex, were it elsewhere.
+    fn shape(&self, v: u32, at: Point, normal: Point) -> Shape {
+        let mut shape = Shape { worst: 0.0, sum: 0.0 };
+        for quad in self.quads_around(v) {
+            let points = quad.map(|w| if w == v { at } else { self.positions[w as usize] });
+            let normals = quad.map(|w| if w == v { normal } else { self.normals[w as usize] });
+            for bad in badness::on_surface(points, normals) {
+                shape.worst = shape.worst.max(bad);
+                shape.sum += bad.powi(POWER);
+            }
+        }
+        shape
+    }
+
+    /// Moves a vertex to the best point found near it, if one is better than where it is.
+    fn improve(&mut self, v: u32) -> bool {
+        let (here, normal) = (self.positions[v as usize], self.normals[v as usize]);
+        let before = self.shape(v, here, normal);
+        let most = before.worst.max(self.bound);
+        let mut best = (before.sum * (1.0 - LEAST_GAIN), None);
+        let (length, targets) = self.targets(v);
+        for target in targets {
+            let at = self.surface.nearest(target);
+            let normal_there = self.surface.normal(at);
+            if dot(normal, normal_there) <= OTHER_SIDE {
+                continue;
+            }
+            let shape = self.shape(v, at, normal_there);
+            let is_better = shape.sum < best.0 && shape.worst <= most;
+            if is_better && self.stray(v, at) <= STRAY * length {
+                best = (shape.sum, Some((at, normal_there)));
+            }
+        }
+        let Some((at, normal)) = best.1 else { return false };
+        self.positions[v as usize] = at;
+        self.normals[v as usize] = normal;
+        true
+    }
+
+    /// How far the quads around a vertex, were it elsewhere, are from the point it comes from.
+    fn stray(&self, v: u32, at: Point) -> f64 {
+        let halves = self.quads_around(v).flat_map(|quad| {
+            let first = quad.iter().position(|&w| w == v).unwrap_or(0);
+            let [b, c, d] = [1, 2, 3].map(|k| self.positions[quad[(first + k) % 4] as usize]);
+            [[at, b, c], [at, c, d]]
+        });
+        let home = self.homes[v as usize];
+        halves.map(|half| distance_to_triangle(home, half)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The mean edge at a vertex, and points to try: some around it in its tangent plane, and the mean of its
+    /// neighbours.
+    fn targets(&self, v: u32) -> (f64, Vec<Point>) {
+        let here = self.positions[v as usize];
+        let neighbours: Vec<Point> = self
+            .connectivity
+            .neighbours(v)
+            .map(|w| sub(self.positions[w as usize], here))
+            .collect();
+        let share = 1.0 / neighbours.len() as f64;
+        let length = share * neighbours.iter().map(|&d| norm(d)).sum::<f64>();
+        let mean = scale(neighbours.iter().copied().fold([0.0; 3], add), share);
+        let mut targets = vec![add(here, mean), add(here, scale(mean, 0.5))];
+        let Some(normal) = unit(self.normals[v as usize]) else { return (length, targets) };
+        let along = |d: &Point| unit(sub(*d, scale(normal, dot(*d, normal))));
+        let Some(x) = neighbours.iter().find_map(along) else {
+            return (length, targets);
+        };
+        let y = cross(normal, x);
+        for k in 0..DIRECTIONS {
+            let (sin, cos) = (k as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
+            let direction = add(scale(x, cos), scale(y, sin));
+            targets.extend(STEPS.map(|step| add(here, scale(direction, step * length))));
+        }
+        (length, targets)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::{Angles, Orientation};
+    use seamstress_testkit::{Rng, disk_grid};
+
+    fn grid() -> (Vec<Point>, Vec<[u32; 3]>, Vec<[u32; 4]>) {
+        let grid = disk_grid(8, 8);
+        let faces = grid.faces.chunks(2);
+        let quads = faces.map(|pair| [pair[0][0], pair[0][1], pair[0][2], pair[1][2]]).collect();
+        (grid.positions, grid.faces, quads)
+    }
+
+    fn angles(mesh: &QuadMesh) -> Angles {
+        Angles::new(mesh.positions(), mesh.quads().iter().map(<[u32; 4]>::as_slice))
+    }
+
+    #[test]
+    fn a_tangled_grid_is_untangled_and_the_rest_stays() {
+        let (positions, faces, quads) = grid();
+        let surface = (positions.as_slice(), faces.as_slice());
+        let side = 0.25;
+        for seed in 0..20 {
+            let mut rng = Rng::new(seed);
+            let mut tangled = positions.clone();
+            let centre = positions.iter().position(|p| p[0] == 0.0 && p[1] == 0.0).unwrap();
+            for k in 0..2 {
+                tangled[centre][k] += side * (3.0 * rng.unit() - 1.5);
+            }
+            let before = QuadMesh::new(tangled, quads.clone()).unwrap();
+            let mended = mend(&before, surface, &MendOptions::default()).unwrap();
+            let after = angles(&mended.mesh);
+            assert!(after.min >= 44.9 && after.max <= 135.1, "{seed}: {after:?}");
+            let polygons = mended.mesh.quads().iter().map(<[u32; 4]>::as_slice);
+            let side = Orientation::new(mended.mesh.positions(), polygons, surface).unwrap();
+            assert_eq!(side, Orientation::default());
+            // Only around the centre.
+            assert!(mended.moved <= 9, "{seed}: {} moved", mended.moved);
+        }
+    }
+
+    #[test]
+    fn good_quads_and_fixed_vertices_stay() {
+        let (positions, faces, quads) = grid();
+        let surface = (positions.as_slice(), faces.as_slice());
+        let good = QuadMesh::new(positions.clone(), quads.clone()).unwrap();
+        let mended = mend(&good, surface, &MendOptions::default()).unwrap();
+        assert_eq!((mended.mesh, mended.moved, mended.largest_move), (good, 0, 0.0));
+        let mut tangled = positions.clone();
+        let centre = positions.iter().position(|p| p[0] == 0.0 && p[1] == 0.0).unwrap();
+        tangled[centre][0] += 0.3;
+        let bad = QuadMesh::new(tangled, quads.clone()).unwrap();
+        let fixed: Vec<[u32; 2]> =
+            quads.iter().flat_map(|q| [[q[0], q[1]], [q[2], q[3]]]).collect();
+        let options = MendOptions { fixed, ..MendOptions::default() };
+        assert_eq!(mend(&bad, surface, &options).unwrap().moved, 0);
+    }
+
+    #[test]
+    fn tips_are_not_cut_off() {
+        // A pyramid whose sides are cut into grids, one line slanted; its apex is the only vertex on top.
+        let apex = [0.0, 0.0, 3.0];
+        let n = 4;
+        let mut positions = Vec::new();
+        for y in -n..=n {
+            for x in -n..=n {
+                let height = 3.0 * (1.0 - f64::from(x.abs().max(y.abs())) / f64::from(n));
+                positions.push([f64::from(x), f64::from(y), height]);
+            }
+        }
+        let at = |x: i32, y: i32| ((y + n) * (2 * n + 1) + x + n) as u32;
+        let cells = (-n..n).flat_map(|y| (-n..n).map(move |x| (x, y)));
+        let quads: Vec<[u32; 4]> =
+            cells.map(|(x, y)| [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)]).collect();
+        let base = [[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [4.0, 4.0, 0.0], [-4.0, 4.0, 0.0], apex];
+        let sides = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        positions[at(1, 0) as usize] = [0.1, 0.0, 2.925];
+        let bad = QuadMesh::new(positions, quads).unwrap();
+        let mended = mend(&bad, (&base, &sides), &MendOptions::default()).unwrap();
+        let (before, after) = (angles(&bad), angles(&mended.mesh));
+        assert!(before.max > 170.0 && after.max < before.max - 20.0, "{before:?} {after:?}");
+        let to_apex = mended.mesh.positions().iter().map(|&p| norm(sub(p, apex)));
+        assert!(to_apex.fold(f64::INFINITY, f64::min) < 0.2);
+    }
+
+    #[test]
+    fn what_cannot_be_mended_is_refused() {
+        let (positions, faces, quads) = grid();
+        let mesh = QuadMesh::new(positions.clone(), quads).unwrap();
+        let error = mend(&mesh, (&positions, &[]), &MendOptions::default()).unwrap_err();
+        assert!(matches!(error, SmoothError::BadSurface(_)), "{error}");
+        let bow = QuadMesh::new(vec![[0.0; 3]; 7], vec![[0, 1, 2, 3], [2, 4, 5, 6]]).unwrap();
+        let error = mend(&bow, (&positions, &faces), &MendOptions::default()).unwrap_err();
+        assert!(matches!(error, SmoothError::NoManifold(_)), "{error}");
+    }
+}

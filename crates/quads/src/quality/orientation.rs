@@ -1,0 +1,109 @@
+//! Which way polygons face.
+
+use crate::surface::Surface;
+use crate::vector::{Point, add, cross, dot, sub, unit, vector_area};
+use rayon::prelude::*;
+
+/// How polygons lie to the surface they stand for.
+///
+/// The normal at a corner is that of the surface at the nearest point: of its face, or the mean over the faces of
+/// its edge or, weighted by their angles, around its vertex.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Orientation {
+    /// Polygons whose vector area points against the sum of the normals at their corners.
+    pub inverted: usize,
+    /// Quads two of whose opposite sides cross, seen along that sum.
+    pub crossed: usize,
+    /// Corners that turn against the surface's normal there.
+    pub turned_corners: usize,
+}
+
+/// Why nothing was measured.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the surface cannot be used: {0}")]
+pub struct BadSurface(String);
+
+impl Orientation {
+    /// Compares polygons with the triangles of a surface; corners must be below the number of positions.
+    ///
+    /// # Errors
+    /// If the surface has no triangles.
+    pub fn new<'a>(
+        positions: &[Point],
+        polygons: impl Iterator<Item = &'a [u32]>,
+        surface: (&[Point], &[[u32; 3]]),
+    ) -> Result<Self, BadSurface> {
+        let surface = Surface::new(surface.0, surface.1).map_err(BadSurface)?;
+        let normals: Vec<Point> = positions.par_iter().map(|&p| surface.normal(p)).collect();
+        let mut found = Self::default();
+        for polygon in polygons {
+            let at = |of: &[Point]| polygon.iter().map(|&v| of[v as usize]).collect::<Vec<_>>();
+            found.add(&at(positions), &at(&normals));
+        }
+        Ok(found)
+    }
+
+    fn add(&mut self, points: &[Point], normals: &[Point]) {
+        let mean = normals.iter().copied().fold([0.0; 3], add);
+        self.inverted += usize::from(dot(vector_area(points), mean) <= 0.0);
+        self.crossed += usize::from(points.len() == 4 && is_crossed(points, mean));
+        let n = points.len();
+        let turns = |k: usize| {
+            let [out, back] = [(k + 1) % n, (k + n - 1) % n].map(|j| sub(points[j], points[k]));
+            dot(cross(out, back), normals[k]) <= 0.0
+        };
+        self.turned_corners += (0..n).filter(|&k| turns(k)).count();
+    }
+}
+
+/// Whether opposite sides of a quad cross, seen along a direction.
+fn is_crossed(points: &[Point], along: Point) -> bool {
+    let Some(along) = unit(along) else { return false };
+    let turn = |a: usize, b: usize, c: usize| {
+        dot(cross(sub(points[b], points[a]), sub(points[c], points[a])), along)
+    };
+    let cross = |[a, b]: [usize; 2], [c, d]: [usize; 2]| {
+        turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+    };
+    cross([0, 1], [2, 3]) || cross([1, 2], [3, 0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GROUND: [Point; 3] = [[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]];
+
+    fn orientation(points: &[[f64; 2]]) -> Orientation {
+        let positions: Vec<Point> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        let quad: Vec<u32> = (0..points.len() as u32).collect();
+        let polygons = [quad.as_slice()].into_iter();
+        Orientation::new(&positions, polygons, (&GROUND, &[[0, 1, 2]])).unwrap()
+    }
+
+    #[test]
+    fn quads_in_the_plane_by_hand() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        assert_eq!(orientation(&square), Orientation::default());
+        let mut reversed = square;
+        reversed.reverse();
+        let expected = Orientation { inverted: 1, crossed: 0, turned_corners: 4 };
+        assert_eq!(orientation(&reversed), expected);
+        let dart = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
+        let expected = Orientation { inverted: 0, crossed: 0, turned_corners: 1 };
+        assert_eq!(orientation(&dart), expected);
+        // More of it the right way round than not.
+        let bow = [[0.0, 0.0], [2.0, 0.0], [0.9, 1.0], [1.0, 0.9]];
+        assert_eq!(orientation(&bow).crossed, 0);
+        let bow = [[0.0, 0.0], [3.0, 0.0], [0.5, 1.0], [2.0, 1.0]];
+        let expected = Orientation { inverted: 0, crossed: 1, turned_corners: 2 };
+        assert_eq!(orientation(&bow), expected);
+    }
+
+    #[test]
+    fn no_surface_is_an_error() {
+        let none = Orientation::new(&GROUND, std::iter::empty(), (&GROUND, &[]));
+        assert!(none.is_err());
+    }
+}
