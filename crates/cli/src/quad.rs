@@ -75,8 +75,8 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     if !args.run.quiet {
         tell_losses(&extraction);
     }
-    let kept: &[[u32; 2]] = start.features.as_ref().map_or(&[], |features| &features.kept);
-    let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: kept };
+    let features = start.features.as_ref().map_or(&[][..], |features| &features.kept);
+    let shaping = Shaping { raw: args.raw, smooth: args.smooth, features };
     let shaped = shaping.apply(&mesh, &source, &mut extraction)?;
     let picture = args
         .picture

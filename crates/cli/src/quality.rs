@@ -233,7 +233,7 @@ fn distance_rows(distance: &SurfaceDistance, source: &Path) -> Vec<String> {
     vec![
         row("source", &source.display().to_string()),
         row("Hausdorff", &share(distance.hausdorff)),
-        row("mean distance", &share(distance.mean)),
+        row("mean", &share(distance.mean)),
         row("to source", &both(&distance.to_source)),
         row("from source", &both(&distance.from_source)),
     ]

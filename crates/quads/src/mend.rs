@@ -12,7 +12,7 @@ use rayon::prelude::*;
 pub struct MendOptions {
     /// Quads with a corner further from a right angle than this are mended, degrees.
     pub deviation: f64,
-    /// How often each vertex of such quads is moved, at most; irregular ones as often again.
+    /// How often each vertex of such quads is moved, at most, in each of four passes.
     pub rounds: u32,
     /// Vertices that stay where they are; those on the boundary always do.
     pub fixed: Vec<u32>,
@@ -45,10 +45,13 @@ const STEPS: [f64; 4] = [0.4, 0.2, 0.08, 0.03];
 const DIRECTIONS: usize = 8;
 /// A move has to gain this part of the shape's badness.
 const LEAST_GAIN: f64 = 1e-3;
-/// The quads around a vertex stay this close to the point it comes from, as a part of the mean edge there: no
-/// tip or crease is cut off.
+/// The quads around a vertex stay this close to the point it comes from, in mean edges there: no tip or crease is
+/// cut off.
 const STRAY: f64 = 0.1;
-/// Normals before and after a move have at least this cosine: beyond lies the other side of a thin wall.
+/// The same for quads that nothing else helped, step by step.
+const FURTHER_STRAYS: [f64; 2] = [0.4, 1.0];
+/// Normals before and after a move have at least this cosine: beyond lies the other side of a thin wall. Quads
+/// that nothing else helped may lie on a knife's edge; they may go there.
 const OTHER_SIDE: f64 = -0.7;
 
 /// Moves the vertices of badly shaped quads along a surface until their corners are better.
@@ -57,7 +60,8 @@ const OTHER_SIDE: f64 = -0.7;
 /// its vertices are moved: each to the best of some points around it, projected to the surface, by the
 /// badness of all corners around it. No quad becomes worse than it was, or than the bound, and the quads
 /// stay near the point each vertex comes from. All other vertices stay, and boundary and fixed ones;
-/// irregular ones are moved only when the others did not help.
+/// irregular ones are moved only when the others did not help, and only quads with reflex corners may
+/// then stray further.
 ///
 /// Vertices are moved one by one in their order: the result does not depend on the number of threads.
 ///
@@ -88,25 +92,12 @@ pub fn mend(
     let mut state =
         State { connectivity, quads, surface: &surface, homes, positions, normals, bound };
 
-    // Without irregular vertices, then with them. Only where something has changed can be a gain.
-    let mut is_due = may_move.clone();
-    irregular.iter().for_each(|irregular| is_due[irregular.vertex as usize] = false);
-    let mut may_move_now = is_due.clone();
-    for round in 0..2 * options.rounds {
-        if round == options.rounds {
-            may_move_now.clone_from(&may_move);
-            is_due.clone_from(&may_move);
+    for phase in phases(bound) {
+        let mut may_move_now = may_move.clone();
+        if !phase.with_irregular {
+            irregular.iter().for_each(|irregular| may_move_now[irregular.vertex as usize] = false);
         }
-        let due: Vec<u32> = (0..n_vertices).filter(|&v| is_due[v as usize]).collect();
-        let bad: Vec<u32> = due.into_par_iter().filter(|&v| state.worst(v) > bound).collect();
-        is_due.fill(false);
-        for v in bad {
-            if state.improve(v) {
-                for w in state.quads_around(v).flatten() {
-                    is_due[w as usize] = may_move_now[w as usize];
-                }
-            }
-        }
+        state.run(&phase, &may_move_now, options.rounds);
     }
     let moves: Vec<f64> = state
         .positions
@@ -119,6 +110,30 @@ pub fn mend(
         largest_move: moves.into_iter().fold(0.0, f64::max),
         mesh: QuadMesh::from_parts(state.positions, mesh.quads().to_vec()),
     })
+}
+
+/// A part of the work: which vertices are moved, and how far.
+struct Phase {
+    with_irregular: bool,
+    /// Only vertices around which the badness is more than this are moved.
+    worse_than: f64,
+    /// The quads around a vertex stay this close to the point it comes from, as a part of the mean edge there.
+    stray: f64,
+    /// Least cosine of the normals before and after a move.
+    least_cosine: f64,
+}
+
+/// Irregular vertices come second; what then is still reflex or inverted may stray further.
+fn phases(bound: f64) -> [Phase; 4] {
+    let near = |with_irregular| Phase {
+        with_irregular,
+        worse_than: bound,
+        stray: STRAY,
+        least_cosine: OTHER_SIDE,
+    };
+    let further = |stray| Phase { worse_than: 1.0, stray, least_cosine: -1.0, ..near(true) };
+    let [far, furthest] = FURTHER_STRAYS.map(further);
+    [near(false), near(true), far, furthest]
 }
 
 struct State<'a> {
@@ -141,6 +156,25 @@ struct Shape {
 }
 
 impl State<'_> {
+    /// Moves vertices in rounds, while there is a gain.
+    fn run(&mut self, phase: &Phase, may_move: &[bool], rounds: u32) {
+        let mut is_due = may_move.to_vec();
+        for _ in 0..rounds {
+            let due: Vec<u32> = (0..is_due.len() as u32).filter(|&v| is_due[v as usize]).collect();
+            let is_bad = |&v: &u32| self.worst(v) > phase.worse_than;
+            let bad: Vec<u32> = due.into_par_iter().filter(is_bad).collect();
+            // Only where something has changed can be a gain next time.
+            is_due.fill(false);
+            for v in bad {
+                if self.improve(v, phase) {
+                    for w in self.quads_around(v).flatten() {
+                        is_due[w as usize] = may_move[w as usize];
+                    }
+                }
+            }
+        }
+    }
+
     fn quads_around(&self, v: u32) -> impl Iterator<Item = [u32; 4]> + '_ {
         self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize])
     }
@@ -164,7 +198,7 @@ impl State<'_> {
     }
 
     /// Moves a vertex to the best point found near it, if one is better than where it is.
-    fn improve(&mut self, v: u32) -> bool {
+    fn improve(&mut self, v: u32, phase: &Phase) -> bool {
         let (here, normal) = (self.positions[v as usize], self.normals[v as usize]);
         let before = self.shape(v, here, normal);
         let most = before.worst.max(self.bound);
@@ -173,12 +207,12 @@ impl State<'_> {
         for target in targets {
             let at = self.surface.nearest(target);
             let normal_there = self.surface.normal(at);
-            if dot(normal, normal_there) <= OTHER_SIDE {
+            if dot(normal, normal_there) < phase.least_cosine {
                 continue;
             }
             let shape = self.shape(v, at, normal_there);
             let is_better = shape.sum < best.0 && shape.worst <= most;
-            if is_better && self.stray(v, at) <= STRAY * length {
+            if is_better && self.stray(v, at) <= phase.stray * length {
                 best = (shape.sum, Some((at, normal_there)));
             }
         }

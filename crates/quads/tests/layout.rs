@@ -5,9 +5,9 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 use seamstress::quality::distortion;
 use seamstress::{SeamlessMap, Tolerance};
-use seamstress_quads::QuadMesh;
 use seamstress_quads::layout::{LayoutError, QuadLayout, lay_out_conformal, lay_out_squares};
 use seamstress_quads::quality::{Topology, measure};
+use seamstress_quads::{ExtractOptions, QuadMesh, extract};
 use seamstress_surface::Metric;
 use seamstress_testkit as kit;
 use std::collections::BTreeMap;
@@ -69,6 +69,34 @@ proptest! {
         let metric = Metric::from_positions(&layout.mesh, quads.positions());
         let d = distortion(&layout.mesh, &metric, &layout.corner_uvs);
         prop_assert!((d.tau - 1.0).abs() < 1e-12 && (d.symmetric_dirichlet - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn random_complexes_are_integer_maps_too(
+        genus in 0u32..3, steps in 0usize..60, seed in any::<u64>(),
+    ) {
+        let kit::QuadSoup { positions, quads } = kit::random_quads(genus, steps, seed);
+        let quads = QuadMesh::new(positions, quads).unwrap();
+        let layout = lay_out_squares(&quads).unwrap();
+        prop_assert!(layout.corner_uvs.iter().flatten().all(|x| x.fract() == 0.0));
+        let map = certified(&layout);
+        prop_assert_eq!(valences(&map), topology(&quads).irregular);
+        // All quads have the same area: what is left is how many there are.
+        prop_assert_eq!(quads.quads().len(), layout.corner_uvs.len() / 6);
+        // The map is an integer map, and its quads are the quads it came from.
+        let options = ExtractOptions::default();
+        let found = extract(&layout.mesh, quads.positions(), &layout.corner_uvs, &options).unwrap();
+        let ring = |quad: &[u32; 4], positions: &[[f64; 3]]| {
+            let mut corners = quad.map(|v| positions[v as usize].map(f64::to_bits));
+            let first = (0..4).min_by_key(|&k| corners[k]).unwrap();
+            corners.rotate_left(first);
+            corners
+        };
+        let rings = |mesh: &QuadMesh| {
+            let rings = mesh.quads().iter().map(|quad| ring(quad, mesh.positions()));
+            rings.collect::<std::collections::BTreeSet<_>>()
+        };
+        prop_assert_eq!(rings(&found.mesh), rings(&quads));
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod flips;
 mod integer_maps;
 mod modify;
 mod patches;
+mod quads;
 mod random;
 mod rng;
 mod solids;
@@ -24,6 +25,7 @@ pub use modify::{
     bumpy, disjoint_union, klee, relabel, remove_faces, scale, stretch, subdivide, with_boundaries,
 };
 pub use patches::{annulus, cylinder, disk_grid, fan, graph, monkey_saddle, saddle};
+pub use quads::{QuadSoup, random_quads};
 pub use random::random_surface;
 pub use rng::Rng;
 pub use solids::{crown, cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
