@@ -142,6 +142,22 @@ fn foreign_fields_and_angles_are_followed() {
         let run = folder.expect(0, &["map", &mesh, "-o", "map.obj", flag, &file, "--json"]);
         let report: Value = serde_json::from_str(&run.stdout).unwrap();
         assert_eq!(report["cones"]["count"], cones, "{file}");
+        if flag == "--cones" {
+            let angles: Vec<f64> = std::fs::read_to_string(&file)
+                .unwrap()
+                .lines()
+                .map(|line| line.trim().parse().unwrap())
+                .collect();
+            for cone in report["cones"]["list"].as_array().unwrap() {
+                let vertex = cone["vertex"].as_u64().unwrap() as usize;
+                let quarters = 4.0 - cone["index"].as_f64().unwrap();
+                let asked = angles[vertex] / std::f64::consts::FRAC_PI_2;
+                assert!(
+                    (quarters - asked).abs() < 1e-6,
+                    "vertex {vertex}: {quarters}, {asked} asked"
+                );
+            }
+        }
         folder.expect(0, &["check", &mesh, "map.obj"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The rounding loop: batch after batch of integer variables.
 
-use super::program::{BatchProgram, Placed, rotation};
+use super::program::{BatchProgram, MOST_TAU, Placed, rotation};
 use super::search::{Found, Limits, search};
 use super::{BatchStats, MixedIntegerOptions, MixedIntegerStats};
 use crate::layout::isometric::{frames_of_angles, unfold};
@@ -16,8 +16,8 @@ const SAME: f64 = 1e-9;
 /// Chooses the matchings of a connected mesh by mixed-integer programs, with nothing aligned.
 ///
 /// Batches are of the matchings nearest to integers in the last layout. Each may take one of the two
-/// integers next to it. A batch is rounded to the best integers found; one for which none are found is
-/// halved. Returns the rotations of the faces in the last layout, in the gauge of the all-seam cut, and how
+/// integers next to it. A batch is rounded to the best integers found; where none are found, so much of it
+/// as the search had decided; and where it had decided nothing, the batch is halved. Returns the rotations of the faces in the last layout, in the gauge of the all-seam cut, and how
 /// it went.
 ///
 /// # Errors
@@ -51,18 +51,20 @@ pub fn round_mixed_integer(
             integers: batch.len(),
             nodes: found.nodes,
             tau: found.incumbent.as_ref().map(|best| best.value),
-            bound: found.bound,
+            bound: found.bound.clamp(1.0, MOST_TAU),
             proven: found.is_exhausted && found.incumbent.is_some(),
             seconds: begun.elapsed().as_secs_f64(),
         });
-        match found.incumbent {
-            Some(best) => {
-                state.take(&batch, &best.values, best.state);
+        let values =
+            found.incumbent.map(|best| (best.values.into_iter().map(Some).collect(), best.state));
+        match values.or(found.partial) {
+            Some((values, placed)) => {
+                state.take(&batch, &values, placed);
                 size = (2 * batch.len()).min(most);
             }
-            // Neither integer has a layout with these frames; the routes of the final layout may find one.
-            None if batch.len() == 1 => stats.left_to_nearest += state.round_to_nearest(&batch),
-            None => size = batch.len() / 2,
+            None if batch.len() > 1 => size = batch.len() / 2,
+            // Neither integer has a layout with these frames, and no other choice would change that.
+            None => break,
         }
     }
     let rest: Vec<usize> = state.open().collect();
@@ -146,11 +148,10 @@ impl<'a> Rounding<'a> {
         search(&mut program, &choices, &self.placed, limits, watch)
     }
 
-    /// Rounds a batch and moves on to its layout.
-    fn take(&mut self, batch: &[usize], values: &[i32], placed: Placed) {
+    /// Rounds what was decided of a batch and moves on to its layout.
+    fn take(&mut self, batch: &[usize], values: &[Option<i32>], placed: Placed) {
         for (&seam, &value) in batch.iter().zip(values) {
-            self.rounded[seam] = Some(value);
-            self.rotation[seam] = f64::from(value);
+            self.rounded[seam] = value;
         }
         for seam in 0..self.rounded.len() {
             if self.rounded[seam].is_none() {

@@ -17,8 +17,8 @@ use std::time::Duration;
 pub struct MixedIntegerOptions {
     /// Most matchings that are integer variables at a time, b in the seed.
     pub batch: usize,
-    /// Most programs solved for a batch. The first integers are found with less, and more prove them, or
-    /// find better ones.
+    /// Most programs solved for a batch, and some more as long as no integers were found. The first integers
+    /// are mostly found with fewer; more prove them, or find better ones.
     pub nodes: usize,
     /// Time for all batches of a component together. The result depends on the machine where it runs out;
     /// what is open then is rounded to the nearest integers.
@@ -61,7 +61,8 @@ pub struct BatchStats {
     pub nodes: usize,
     /// tau of the program at the best integers found, the incumbent; none if none were found.
     pub tau: Option<f64>,
-    /// Bound from below on tau over all choices of the two integers next to each matching.
+    /// Bound from below on tau over all choices of the two integers next to each matching; 4 where no choice
+    /// has a layout of smaller tau.
     pub bound: f64,
     /// Whether the incumbent is the best choice, to the tolerance.
     pub proven: bool,

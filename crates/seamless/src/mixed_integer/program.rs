@@ -1,6 +1,7 @@
 //! The bounded-distortion program (9) over layouts in which only the rounded seams close.
 
 use super::search::{Relax, Relaxed, Verdict};
+use crate::layout::conic::interior_point::{self, Renewal};
 use crate::layout::conic::{Outcome, Program, ProgramKind, Solver, SolverOptions, solve};
 use crate::layout::exact::ExactLayout;
 use crate::progress::{Cancelled, Watch};
@@ -37,6 +38,10 @@ pub(super) struct BatchProgram<'a> {
 
 /// Most interior-point iterations.
 const MAX_ITERATIONS: usize = 60;
+/// Choices that lead to a larger tau count as having no layout: the final layout does better from any start.
+pub(super) const MOST_TAU: f64 = 4.0;
+/// Gap of the program that looks for a start, fine enough to tell [`MOST_TAU`].
+const DEVIATION_GAP: f64 = 5e-4;
 
 impl Relax for BatchProgram<'_> {
     type State = Placed;
@@ -88,6 +93,9 @@ impl BatchProgram<'_> {
             scales: None,
             left: None,
         };
+        let Some(start) = inside(&mut layout, &program, start, watch)? else {
+            return Ok(Ok(Verdict::Infeasible));
+        };
         let options = SolverOptions { tolerance: self.tolerance, max_iterations: MAX_ITERATIONS };
         let solution = solve(layout.problem_mut(), &program, &start, Solver::Own, &options, watch)?;
         Ok(Ok(match solution.outcome {
@@ -134,6 +142,34 @@ impl BatchProgram<'_> {
         let start = layout.nearest(slit, &from.corner)?;
         Ok((layout, start))
     }
+}
+
+/// A layout inside the constraints of a program, if one is found soon, else the layout given; none
+/// where every solution has a tau above [`MOST_TAU`].
+///
+/// Least deviation from the frames, (8), is a program that any layout can start. A solution of ours at `mu`,
+/// scaled by `1 / mu^2`, has a squared deviation of at most `1 - 1 / mu^2`.
+fn inside(
+    layout: &mut ExactLayout,
+    program: &Program,
+    start: Vec<f64>,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Option<Vec<f64>>, Cancelled> {
+    let is_inside = |layout: &ExactLayout, y: &[f64]| {
+        program.value(layout.problem(), &layout.expand(y)).is_finite()
+    };
+    if is_inside(layout, &start) {
+        return Ok(Some(start));
+    }
+    let deviation = Program { kind: ProgramKind::Deviation, ..program.clone() };
+    let options = SolverOptions { tolerance: DEVIATION_GAP, max_iterations: MAX_ITERATIONS };
+    let problem = layout.problem_mut();
+    let near = interior_point::solve(problem, &deviation, &start, Renewal::Never, &options, watch)?;
+    let least = (0.5 * near.objective).sqrt() * (1.0 - near.gap);
+    if near.outcome == Outcome::Solved && least.powi(2) > 1.0 - MOST_TAU.powi(-4) {
+        return Ok(None);
+    }
+    Ok(Some(if is_inside(layout, &near.y) { near.y } else { start }))
 }
 
 /// Angle from the left to the right image of a seam, on the branch nearest to `last`; quarters.

@@ -42,7 +42,7 @@ pub(super) struct Relaxed<S> {
 /// When the search ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
-    /// Programs solved.
+    /// Programs solved; [`DIVE`] more as long as there is no incumbent.
     pub(super) nodes: usize,
     pub(super) deadline: Option<Instant>,
     /// Integers must promise to be better by this part of the value.
@@ -52,6 +52,8 @@ pub(super) struct Limits {
 /// What was found.
 pub(super) struct Found<S> {
     pub(super) incumbent: Option<Incumbent<S>>,
+    /// Without an incumbent: what the node that the search ended at had decided, if anything, and its layout.
+    pub(super) partial: Option<(Vec<Option<i32>>, S)>,
     /// Bound from below on the value over all choices; never above the incumbent's value.
     pub(super) bound: f64,
     /// Programs solved.
@@ -67,6 +69,8 @@ pub(super) struct Incumbent<S> {
     pub(super) state: S,
 }
 
+/// Programs that the first dive may take beyond the limit.
+const DIVE: usize = 60;
 /// A variable this near to an integer is decided along with any others.
 const NEAR: f64 = 0.05;
 /// Of the others, one in this many is decided in a step.
@@ -93,9 +97,10 @@ pub(super) fn search<R: Relax>(
     let mut stack: Vec<Open<R::State>> = Vec::new();
     let mut is_exhausted = true;
     match search.solve(program, &undecided, from, watch)? {
-        None => return Ok(search.finish(f64::NEG_INFINITY, false)),
-        Some(Verdict::Unsolved) => return Ok(search.finish(f64::NEG_INFINITY, false)),
-        Some(Verdict::Infeasible) => return Ok(search.finish(f64::INFINITY, true)),
+        None | Some(Verdict::Unsolved) => {
+            return Ok(search.finish(f64::NEG_INFINITY, false, None));
+        }
+        Some(Verdict::Infeasible) => return Ok(search.finish(f64::INFINITY, true, None)),
         Some(Verdict::Solved(root)) => search.enter(program, &mut stack, undecided, root),
     }
     while let Some(top) = stack.last_mut() {
@@ -104,7 +109,7 @@ pub(super) fn search<R: Relax>(
             stack.pop();
             continue;
         };
-        let verdict = match search.nodes < limits.nodes {
+        let verdict = match search.may_go_on() {
             true => search.solve(program, &values, &top.relaxed.state, watch)?,
             false => None,
         };
@@ -127,7 +132,8 @@ pub(super) fn search<R: Relax>(
     }
     // A node's bound holds for the children it has not been asked for.
     let open = stack.iter().map(|open| open.relaxed.bound).fold(f64::INFINITY, f64::min);
-    Ok(search.finish(open, is_exhausted))
+    let last = stack.pop().filter(|last| last.values.iter().any(Option::is_some));
+    Ok(search.finish(open, is_exhausted, last))
 }
 
 /// A node some of whose children are still to be looked at.
@@ -196,6 +202,11 @@ impl<S> Search<'_, S> {
     fn cutoff(&self) -> f64 {
         let best = self.incumbent.as_ref().map_or(f64::INFINITY, |best| best.value);
         best * (1.0 - self.limits.tolerance)
+    }
+
+    fn may_go_on(&self) -> bool {
+        let more = if self.incumbent.is_none() { DIVE } else { 0 };
+        self.nodes < self.limits.nodes.saturating_add(more)
     }
 
     /// Solves a node; none when time is up.
@@ -268,7 +279,7 @@ impl<S> Search<'_, S> {
         group
     }
 
-    fn finish(self, open: f64, is_exhausted: bool) -> Found<S> {
+    fn finish(self, open: f64, is_exhausted: bool, last: Option<Open<S>>) -> Found<S> {
         let cutoff = self.cutoff();
         let best = self.incumbent.as_ref().map_or(f64::INFINITY, |best| best.value);
         let bound = match is_exhausted {
@@ -276,7 +287,9 @@ impl<S> Search<'_, S> {
             false => open.min(self.lost).min(best),
         };
         let is_exhausted = is_exhausted && self.lost >= cutoff;
-        Found { incumbent: self.incumbent, bound, nodes: self.nodes, is_exhausted }
+        let partial = last.filter(|_| self.incumbent.is_none());
+        let partial = partial.map(|last| (last.values, last.relaxed.state));
+        Found { incumbent: self.incumbent, partial, bound, nodes: self.nodes, is_exhausted }
     }
 }
 
@@ -376,9 +389,9 @@ mod tests {
         for seed in 0..20 {
             let (full, ..) = run(seed, 8, usize::MAX);
             let optimum = full.incumbent.unwrap().value;
-            for nodes in [1, 3, 6, 12] {
+            for nodes in [1, 6, 12, 25] {
                 let (found, ..) = run(seed, 8, nodes);
-                assert!(found.nodes <= nodes);
+                assert!(found.nodes <= nodes.max(DIVE));
                 assert!(found.bound <= optimum * (1.0 + 1e-12), "seed {seed}, {nodes} nodes");
                 if let Some(incumbent) = found.incumbent {
                     assert!(found.bound <= incumbent.value && incumbent.value >= optimum - 1e-9);

@@ -109,14 +109,17 @@ fn map_unaligned(
     Err(failure)
 }
 
-/// Mixed-integer rounding for a component that nothing else has mapped, if it is small enough and was not
-/// rounded in that way already.
+/// The other way of rounding for a component that nothing else has mapped: mixed integers if it is small
+/// enough, or, where these were asked for, the default.
 fn last_resort(mesh: &TriMesh, start: &Start, options: &MapOptions) -> Option<MapOptions> {
     let mut last = *options;
-    last.rounding.strategy = RoundingStrategy::MixedInteger;
-    let is_new = options.rounding.strategy != last.rounding.strategy;
-    let is_fit = matches!(start, Start::Mesh) && mesh.n_faces() <= LAST_RESORT_FACES;
-    (is_new && is_fit).then_some(last)
+    last.rounding.strategy = match options.rounding.strategy {
+        RoundingStrategy::MixedInteger => RoundingStrategy::default(),
+        _ => RoundingStrategy::MixedInteger,
+    };
+    let is_fit = options.rounding.strategy == RoundingStrategy::MixedInteger
+        || mesh.n_faces() <= LAST_RESORT_FACES;
+    (matches!(start, Start::Mesh) && is_fit).then_some(last)
 }
 
 /// Cut and round or what else there is to start from, lay out, clean up: in the metric with lengths to the
@@ -255,5 +258,26 @@ impl Clock {
         let seconds = self.start.elapsed().as_secs_f64();
         self.laps.push(StageStats { stage, seconds, iterations });
         self.start = Instant::now();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use seamstress_testkit as testkit;
+
+    #[test]
+    fn the_last_resort_is_the_other_way_of_rounding() {
+        let soup = testkit::cube();
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let other = |strategy, start: &Start| {
+            let mut options = MapOptions::default();
+            options.rounding.strategy = strategy;
+            last_resort(&mesh, start, &options).map(|last| last.rounding.strategy)
+        };
+        let (mixed, bias) = (RoundingStrategy::MixedInteger, RoundingStrategy::ConeBias);
+        assert_eq!(other(bias, &Start::Mesh), Some(mixed));
+        assert_eq!(other(mixed, &Start::Mesh), Some(bias));
+        assert_eq!(other(bias, &Start::SmoothField), None);
     }
 }

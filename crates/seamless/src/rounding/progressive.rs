@@ -22,7 +22,7 @@ pub enum RoundingStrategy {
     /// By the change of energy it makes on a small patch around the seam, the seed's local estimation.
     LocalEstimation,
     /// By programs in which matchings are integer variables, see [`crate::mixed_integer`]. Components with
-    /// aligned edges are rounded by [`Self::ConeBias`].
+    /// aligned edges, and those for which it leads to no layout, are rounded by [`Self::ConeBias`].
     MixedInteger,
 }
 
