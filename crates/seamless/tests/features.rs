@@ -370,13 +370,13 @@ fn a_crease_that_fades_out_ends_openly() {
     // A roof whose ridge sinks into the plane, as the creases of a fan blade do.
     let mut soup = kit::subdivide(&kit::disk_grid(8, 8));
     for p in &mut soup.positions {
-        p[2] = p[0].min(0.0) * p[1].abs();
+        p[2] = -p[0].min(0.0).powi(2) * p[1].abs();
     }
     let mesh = mesh_of(&soup);
     let ridge = sharp_edges(&mesh, &soup.positions, 40f64.to_radians());
     let on_ridge = |h: &Halfedge| soup.positions[mesh.origin(*h).at()][1].abs() < 1e-12;
-    assert!(ridge.len() >= 4 && ridge.edges().iter().all(on_ridge), "{} edges", ridge.len());
+    assert!(ridge.len() >= 3 && ridge.edges().iter().all(on_ridge), "{} edges", ridge.len());
     let solution = aligned(&soup, &ridge.union(&mesh, &EdgeSet::boundary(&mesh)));
     assert!(solution.released.is_empty());
-    assert!(solution.distortion.tau < 1.6, "tau {}", solution.distortion.tau);
+    assert!(solution.distortion.tau < 2.0, "tau {}", solution.distortion.tau);
 }
