@@ -313,8 +313,7 @@ mod tests {
         let centre = positions.iter().position(|p| p[0] == 0.0 && p[1] == 0.0).unwrap();
         tangled[centre][0] += 0.3;
         let bad = QuadMesh::new(tangled, quads.clone()).unwrap();
-        let fixed: Vec<[u32; 2]> =
-            quads.iter().flat_map(|q| [[q[0], q[1]], [q[2], q[3]]]).collect();
+        let fixed = quads.iter().flatten().copied().collect();
         let options = MendOptions { fixed, ..MendOptions::default() };
         assert_eq!(mend(&bad, surface, &options).unwrap().moved, 0);
     }
@@ -323,7 +322,7 @@ mod tests {
     fn tips_are_not_cut_off() {
         // A pyramid whose sides are cut into grids, one line slanted; its apex is the only vertex on top.
         let apex = [0.0, 0.0, 3.0];
-        let n = 4;
+        let n = 4i32;
         let mut positions = Vec::new();
         for y in -n..=n {
             for x in -n..=n {
