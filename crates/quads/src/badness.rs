@@ -70,10 +70,10 @@ mod tests {
         assert_eq!(on_surface(SQUARE, [[0.0, 0.0, 1.0]; 4]), [0.0; 4]);
         assert_eq!(on_surface(SQUARE, [[0.0, 0.0, -1.0]; 4]), [5.0; 4]);
         assert_eq!(on_surface(SQUARE, [[1.0, 0.0, 0.0]; 4]), [2.0; 4]);
-        // Bent up at one corner by a right angle: reflex there, seen from the side.
+        // Bent up at one corner: seen from the side, the opposite one is reflex.
         let mut bent = SQUARE;
         bent[2] = [0.5, 0.5, 1.0];
-        let [_, _, corner, _] = on_surface(bent, [[-1.0, -1.0, 0.1]; 4]);
-        assert!(corner > 1.0);
+        let [opposite, _, corner, _] = on_surface(bent, [[-1.0, -1.0, -0.1]; 4]);
+        assert!(opposite > 1.0 && corner < 1.0);
     }
 }

@@ -4,6 +4,7 @@ use crate::harness::{Folder, lines_of};
 use seamstress_io::{MapObj, write_map_obj};
 use seamstress_testkit::{IntegerMap, cube, disk_grid, slab_with_holes, squares, torus};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 fn write_map(folder: &Folder, name: &str, map: &IntegerMap) {
@@ -137,4 +138,80 @@ fn maps_with_folds_from_the_collection() {
     assert_eq!(report["quads"]["vertices"], 1075);
     assert_eq!(report["quads"]["is_manifold"], true);
     assert_eq!(report["map"]["uv_area"], 1073.0);
+}
+
+/// Vertices and quads of an OBJ file.
+fn quads_of(text: &str) -> (Vec<[f64; 3]>, Vec<[usize; 4]>) {
+    let positions = lines_of(text, "v").into_iter().map(|line| {
+        let mut numbers = line.split_whitespace().map(|x| x.parse().unwrap());
+        [(); 3].map(|()| numbers.next().unwrap())
+    });
+    let quads = lines_of(text, "f").into_iter().map(|line| {
+        let mut corners = line.split_whitespace().map(|c| c.split('/').next().unwrap());
+        [(); 4].map(|()| corners.next().unwrap().parse::<usize>().unwrap() - 1)
+    });
+    (positions.collect(), quads.collect())
+}
+
+/// For each vertex of ours one of theirs at the same place, to the digits of the files.
+fn same_places(ours: &[[f64; 3]], theirs: &[[f64; 3]]) -> Vec<Option<usize>> {
+    let distance =
+        |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+    let far = theirs.iter().map(|&q| distance(theirs[0], q)).fold(0.0, f64::max);
+    let found = |&p: &[f64; 3]| theirs.iter().position(|&q| distance(p, q) < 1e-5 * far);
+    ours.iter().map(found).collect()
+}
+
+/// What of the quad meshes that libQEx makes of its test maps is found again; chapter 9 says why not all.
+#[test]
+fn quads_of_folded_maps_compared_with_those_of_libqex() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
+    let collection = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
+    if !collection.join("duck_miq_4_param.obj").is_file() {
+        println!("skipped: there are no maps in {}", collection.display());
+        return;
+    }
+    // Coarseness; quads, vertices, boundary loops, by valence; vertices and quads that libQEx has too.
+    let cases = [
+        (4, [1071, 1075, 1], [(3, 21), (5, 12)].as_slice(), [1065, 1031]),
+        (16, [47, 61, 3], &[(2, 1), (3, 7), (5, 2)], [39, 17]),
+        (28, [10, 19, 1], &[(3, 2)], [11, 2]),
+    ];
+    let folder = Folder::new();
+    for (coarseness, counts, by_valence, same) in cases {
+        let map = collection.join(format!("duck_miq_{coarseness}_param.obj"));
+        let map = map.to_string_lossy();
+        let run = folder.expect(0, &["extract", &map, "-o", "q.obj", "--best-effort", "--json"]);
+        let report: Value = serde_json::from_str(&run.stdout).unwrap();
+        let found = ["count", "vertices", "boundary_loops"].map(|n| report["quads"][n].as_u64());
+        assert_eq!(found, counts.map(Some), "{coarseness}");
+        let irregular = report["quads"]["irregular"]["by_valence"].as_object().unwrap();
+        let irregular: Vec<(usize, u64)> =
+            irregular.iter().map(|(v, n)| (v.parse().unwrap(), n.as_u64().unwrap())).collect();
+        assert_eq!(irregular, by_valence, "{coarseness}");
+
+        let expected = collection.join(format!("duck_miq_{coarseness}_quad.obj"));
+        let theirs = quads_of(&std::fs::read_to_string(expected).unwrap());
+        let ours = quads_of(&folder.read("q.obj"));
+        let place = same_places(&ours.0, &theirs.0);
+        let sorted = |mut quad: [usize; 4]| {
+            quad.sort_unstable();
+            quad
+        };
+        let known: BTreeSet<[usize; 4]> = theirs.1.into_iter().map(sorted).collect();
+        let at_known = ours.1.iter().filter_map(|quad| {
+            let corners = quad.map(|v| place[v]);
+            corners.iter().all(Option::is_some).then(|| corners.map(Option::unwrap))
+        });
+        let at_known: Vec<[usize; 4]> = at_known.map(sorted).collect();
+        let common = at_known.iter().filter(|quad| known.contains(*quad)).count();
+        assert_eq!([place.iter().flatten().count(), common], same, "{coarseness}");
+        if coarseness == 4 {
+            assert_eq!(
+                common,
+                at_known.len(),
+                "a quad at known vertices that libQEx does not have"
+            );
+        }
+    }
 }

@@ -23,6 +23,12 @@ fn a_cube_becomes_quads_with_its_corners_irregular() {
     let quality = json(&folder.expect(0, &["quality", "q.obj", "--json"]).stdout);
     assert_eq!(quality["topology"]["polygons"]["4"].as_u64(), Some(quads));
     assert_eq!(quality["topology"]["bad_edges"], 0);
+    let layout =
+        json(&folder.expect(0, &["layout-quads", "q.obj", "-o", "m.obj", "--json"]).stdout);
+    assert_eq!(
+        (&layout["integer_error"], &layout["cones"]["by_index"]["1"]),
+        (&json("0.0"), &json("8"))
+    );
 }
 
 #[test]
