@@ -117,7 +117,7 @@ fn pictures_show_angles_of_any_polygons_and_distortion_of_quads() {
     let tau = picture(&["quality", "box.obj", "--picture", "p.png", "--of", "tau"]);
     assert_ne!(angles, tau);
     // A triangle on top: angles are defined, the layout is not.
-    folder.write("mixed.obj", &BOX.replace("f 7 8 11 10\n", "f 7 8 11\nf 7 11 10\n"));
+    folder.write("mixed.obj", BOX.replace("f 7 8 11 10\n", "f 7 8 11\nf 7 11 10\n"));
     picture(&["quality", "mixed.obj", "--picture", "p.png"]);
     let run = folder.expect(1, &["quality", "mixed.obj", "--picture", "q.png", "--of", "tau"]);
     assert!(run.stderr.contains("tau cannot be painted: polygon 2 has 3 corners"), "{run:?}");
@@ -133,7 +133,7 @@ fn quads_that_face_the_wrong_way_are_told() {
     };
     assert_eq!(report("box.obj")["orientation"]["inverted"], 0);
     assert_eq!(report("box.obj")["measures"].as_array().unwrap().len(), 8);
-    folder.write("turned.obj", &BOX.replace("f 7 8 11 10\n", "f 10 11 8 7\n"));
+    folder.write("turned.obj", BOX.replace("f 7 8 11 10\n", "f 10 11 8 7\n"));
     assert_eq!(report("turned.obj")["orientation"]["inverted"], 1);
 }
 

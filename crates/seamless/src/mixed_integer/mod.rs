@@ -1,8 +1,8 @@
 //! The mixed-integer route: matchings as integer variables of the bounded-distortion program (seed, section 10).
 //!
 //! The program is (9) with the frames of the last layout, over all layouts whose rounded seams close; seams
-//! that are not rounded yet are free. Batches of matchings are chosen by branch and bound ([`search`])
-//! over the interior point of [`crate::layout::conic`] ([`program`]).
+//! that are not rounded yet are free. Batches of matchings are chosen by branch and bound (`search`)
+//! over the interior point of [`crate::layout::conic`] (`program`).
 
 mod batches;
 mod program;

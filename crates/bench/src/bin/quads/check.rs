@@ -40,7 +40,7 @@ pub(crate) fn count(quads: &[[u32; 4]]) -> Result<Counts, String> {
     }
     let edges: BTreeSet<Edge> = next.keys().map(|&(a, b)| (a.min(b), a.max(b))).collect();
     let is_irregular = |(v, fan): (&u32, &Vec<usize>)| {
-        (!open.contains_key(v) && fan.len() != 4).then(|| (*v, fan.len()))
+        (!open.contains_key(v) && fan.len() != 4).then_some((*v, fan.len()))
     };
     Ok(Counts {
         euler_characteristic: around.len() as i64 - edges.len() as i64 + quads.len() as i64,
