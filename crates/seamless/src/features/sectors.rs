@@ -217,11 +217,14 @@ impl<'m> Sectors<'m> {
     }
 }
 
+/// A cone of a single quarter turn would become a vertex of a single quad: none unless it is prescribed.
+const MOST_CONE_INDEX: i32 = 2;
+
 fn base(slit: &TriMesh, sector: Vertex) -> f64 {
     if slit.is_boundary(sector) { 2.0 } else { 4.0 }
 }
 
 fn bounds(slit: &TriMesh, sector: Vertex) -> (i32, i32) {
     let (low, high) = index_bounds(slit.valence(sector));
-    if slit.is_boundary(sector) { (low - 2, high - 2) } else { (low, high) }
+    if slit.is_boundary(sector) { (low - 2, high - 2) } else { (low, high.min(MOST_CONE_INDEX)) }
 }

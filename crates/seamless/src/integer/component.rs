@@ -2,13 +2,14 @@
 
 use super::barrier::advance;
 use super::certificate::IntegerMap;
-use super::connections::{connections, grid_triangles};
+use super::connections::connections;
 use super::gauss::{Gauss, Overflow};
 use super::isolines::turning_points;
 use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{Constraint, RoundingProblem, round_constrained, round_greedily};
+use super::rounding::{Constraint, RoundingProblem, Span, round_constrained, round_greedily};
 use super::scene::{Connection, Scene, distinct};
+use super::shapes::{Shape, shapes};
 use super::snap::snap;
 use super::space::{GridNeeds, IntegerSpace};
 use super::{IntegerOptions, IntegerRounding};
@@ -28,6 +29,9 @@ use std::time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;
+/// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
+/// within a few percent, but other integers are near.
+const NEARBY: [f64; 3] = [1.0, 0.98, 1.02];
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried.
@@ -91,6 +95,8 @@ pub struct IntegerStats {
     pub moves: usize,
     /// Newton iterations after that.
     pub polish: usize,
+    /// Other grids tried whose number of quads is within 2 % of that of the first.
+    pub nudges: usize,
     /// Times the grid was made finer, each by 1.1 in the number of quads.
     pub refinements: usize,
     /// Why the first grid would not do, if so.
@@ -136,8 +142,8 @@ pub(super) struct IntegerProblem<'a> {
     matrix: Dense,
     /// Connections and ways to isolines up to a radius.
     near: (f64, Vec<Connection>),
-    /// Two sides of every triangle whose corners are all grid points.
-    triangles: Vec<[Connection; 2]>,
+    /// Grid points around vertices.
+    shapes: Vec<Shape>,
     /// Mesh length of a mean edge.
     unit: f64,
     seconds: f64,
@@ -165,8 +171,8 @@ impl<'a> IntegerProblem<'a> {
         let needs = grid_needs(mesh, is_cone, aligned, |h| z[cut.wedge[h] as usize]);
         let space = IntegerSpace::new(mesh, &cut, &matching, &needs)?;
         let (coordinates, y) = space.read(&z);
-        let (linear, shapes) = (space.linear()?, triangles(mesh, metric, &cut));
-        let mut problem = LayoutProblem::with_held(linear, shapes, space.n_free())?;
+        let (linear, triangles) = (space.linear()?, triangles(mesh, metric, &cut));
+        let mut problem = LayoutProblem::with_held(linear, triangles, space.n_free())?;
         let z = problem.space().expand(&y);
         if !problem.value(&SymmetricDirichlet, &z).is_finite() {
             return Err(IntegerFailure::Unreadable);
@@ -182,7 +188,7 @@ impl<'a> IntegerProblem<'a> {
         let seconds = start.elapsed().as_secs_f64();
         let scene =
             Scene { mesh, cut: &cut, matching: &matching, needs: &needs, space: &space, z: &z };
-        let triangles = grid_triangles(&scene)?;
+        let shapes = shapes(&scene)?;
         let near = (0.0, Vec::new());
         let unit = metric.unit;
         Ok(Self {
@@ -198,7 +204,7 @@ impl<'a> IntegerProblem<'a> {
             coordinates,
             matrix,
             near,
-            triangles,
+            shapes,
             unit,
             seconds,
         })
@@ -211,8 +217,8 @@ impl<'a> IntegerProblem<'a> {
         0.5 * doubled.sum::<f64>() * self.unit * self.unit
     }
 
-    /// The integer map for cells of a size in mesh units, or of the first finer one that works; its UVs
-    /// begin at a column.
+    /// The integer map for cells of a size in mesh units, or of the first other one that works, nearby or
+    /// finer; its UVs begin at a column.
     ///
     /// # Errors
     /// [`IntegerFailure`], of the first grid.
@@ -228,9 +234,15 @@ impl<'a> IntegerProblem<'a> {
             seconds_reduction: self.seconds,
             ..Default::default()
         };
-        let mut h = cell / self.unit;
+        let nearby = NEARBY.map(f64::sqrt);
+        let finer = (1..=MOST_REFINEMENTS as i32).map(|k| REFINEMENT.powf(-0.5 * f64::from(k)));
+        let grids = nearby.into_iter().chain(finer).enumerate();
+        let is_single = self.options.rounding == IntegerRounding::Greedy;
         let mut first = None;
-        loop {
+        for (k, factor) in grids.take(if is_single { 1 } else { usize::MAX }) {
+            stats.nudges = k.min(NEARBY.len() - 1);
+            stats.refinements = (k + 1).saturating_sub(NEARBY.len());
+            let h = factor * cell / self.unit;
             match self.attempt(h, column, &mut stats, watch) {
                 Ok((corner_uvs, columns)) => {
                     stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
@@ -238,17 +250,11 @@ impl<'a> IntegerProblem<'a> {
                 }
                 Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
                 Err(failure) => {
-                    let first = first.get_or_insert(failure);
-                    let is_last = stats.refinements == MOST_REFINEMENTS
-                        || self.options.rounding == IntegerRounding::Greedy;
-                    if is_last {
-                        return Err(std::mem::replace(first, IntegerFailure::Unreadable));
-                    }
+                    first.get_or_insert(failure);
                 }
             }
-            stats.refinements += 1;
-            h /= REFINEMENT.sqrt();
         }
+        Err(first.unwrap_or(IntegerFailure::Unreadable))
     }
 
     /// One grid: rounds, moves to the integers, polishes, writes in exact numbers and certifies.
@@ -331,12 +337,14 @@ impl<'a> IntegerProblem<'a> {
         let short = self.near.1.iter().filter(|c| c.length < radius);
         let mut constraints: Vec<Constraint> =
             short.map(|c| Constraint::new(c, &self.coordinates, h)).collect();
-        let first = constraints.len();
-        constraints.extend(
-            self.triangles.as_flattened().iter().map(|c| Constraint::new(c, &self.coordinates, h)),
-        );
-        let triangles = (first..constraints.len()).step_by(2).map(|k| [k, k + 1]).collect();
-        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints, triangles })
+        let mut spans = Vec::new();
+        for shape in self.shapes.iter().filter(|shape| shape.extent < radius) {
+            let first = constraints.len();
+            constraints.extend(shape.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h)));
+            let ways = (first..constraints.len()).collect();
+            spans.push(Span { ways, sides: shape.sides.clone() });
+        }
+        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints, shapes: spans })
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a

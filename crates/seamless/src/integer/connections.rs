@@ -1,6 +1,6 @@
 //! Short straight lines between grid points.
 
-use super::gauss::{Gauss, Overflow, add_scaled};
+use super::gauss::Overflow;
 use super::scene::{Connection, Scene, Sight, distinct};
 use crate::quarter::turn;
 use num_complex::Complex64;
@@ -28,29 +28,6 @@ pub fn connections(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection>, Ov
     let lines: Result<Vec<Connection>, Overflow> =
         search.found.iter().map(|sight| scene.line(sight)).collect();
     Ok(distinct(lines?))
-}
-
-/// Two sides of every triangle whose corners are all grid points, from its first corner: the integers alone
-/// decide about such a triangle.
-///
-/// # Errors
-/// [`Overflow`].
-pub fn grid_triangles(scene: &Scene<'_>) -> Result<Vec<[Connection; 2]>, Overflow> {
-    let (mesh, space) = (scene.mesh, scene.space);
-    let mut triangles = Vec::new();
-    for f in mesh.faces() {
-        if mesh.face_vertices(f).iter().all(|&v| scene.needs.is_point[v]) {
-            let [a, b, c] = f.halfedges().map(|h| scene.cut.wedge[h]);
-            let side = |to: u32| {
-                let mut form = space.form(to).clone();
-                add_scaled(&mut form, space.form(a), Gauss::ONE.negated())?;
-                let length = (scene.z[to as usize] - scene.z[a as usize]).norm();
-                Ok(Connection { length, rows: space.rows(&form)? })
-            };
-            triangles.push([side(b)?, side(c)?]);
-        }
-    }
-    Ok(triangles)
 }
 
 /// Directions still in view when an edge is about to be crossed.

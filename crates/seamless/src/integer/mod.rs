@@ -24,6 +24,7 @@ pub mod reduced;
 pub mod rounding;
 pub mod scene;
 pub mod search;
+pub mod shapes;
 pub mod snap;
 mod solve;
 pub mod space;

@@ -4,6 +4,7 @@ use super::conditional::{Conditional, Effect, Row, apply, energy};
 use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
+use super::shapes::has_room;
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
@@ -51,14 +52,45 @@ pub struct RoundingProblem {
     pub mean: Vec<f64>,
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
-    /// Pairs of them, by number, that span a triangle: it must keep its orientation.
-    pub triangles: Vec<[usize; 2]>,
+    /// What several of them span must leave room for a vertex.
+    pub shapes: Vec<Span>,
 }
 
-/// Whether two displacements turn to the left.
-pub fn is_left_turn(a: [f64; 2], b: [f64; 2]) -> bool {
-    a[0] * b[1] - a[1] * b[0] > 0.5
+impl RoundingProblem {
+    /// For each constraint the shapes that it takes part in, by number.
+    pub(super) fn shapes_of(&self) -> Vec<Vec<usize>> {
+        let mut shapes_of = vec![Vec::new(); self.constraints.len()];
+        for (k, span) in self.shapes.iter().enumerate() {
+            span.ways.iter().for_each(|&i| shapes_of[i].push(k));
+        }
+        shapes_of
+    }
 }
+
+/// Points that must leave room for a vertex; see [`super::shapes::Shape`].
+#[derive(Debug, Clone)]
+pub struct Span {
+    /// The constraints that lead from the origin to the other points, by number.
+    pub ways: Vec<usize>,
+    /// Lines between points, 0 the origin, to be seen from their left.
+    pub sides: Vec<[usize; 2]>,
+}
+
+impl Span {
+    /// Whether there is room when the constraints have these displacements.
+    pub fn has_room(&self, displacement: impl Fn(usize) -> [f64; 2]) -> bool {
+        if let (&[i, j], 3) = (self.ways.as_slice(), self.sides.len()) {
+            let ([a, b], [c, d]) = (displacement(i), displacement(j));
+            return a * d - b * c > LEFT_TURN;
+        }
+        let points: Vec<[f64; 2]> =
+            std::iter::once([0.0; 2]).chain(self.ways.iter().map(|&i| displacement(i))).collect();
+        has_room(&self.sides, |k| points[k])
+    }
+}
+
+/// Twice the area of a triangle of grid points is an integer; a positive one is above this.
+const LEFT_TURN: f64 = 0.5;
 
 /// Integers for the coordinates.
 #[derive(Debug, Clone)]
@@ -125,13 +157,13 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     Ok(Rounded { x, violated, restarts })
 }
 
-/// The constraints that do not hold, those of triangles that turn over included.
+/// The constraints that do not hold, those that leave no room included.
 fn violations(problem: &RoundingProblem, x: &[i64]) -> Vec<usize> {
     let constraints = &problem.constraints;
     let mut violated: Vec<usize> =
         (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
-    let turned = |[a, b]: &&[usize; 2]| !is_left_turn(constraints[*a].at(x), constraints[*b].at(x));
-    violated.extend(problem.triangles.iter().filter(turned).flatten());
+    let is_full = |span: &&Span| !span.has_room(|i| constraints[i].at(x));
+    violated.extend(problem.shapes.iter().filter(is_full).flat_map(|span| &span.ways));
     violated
 }
 
@@ -144,19 +176,21 @@ fn fix_connections(
 ) -> (Conditional, Vec<usize>) {
     let constraints = &problem.constraints;
     let mut fixing = Fixing::new(problem, start);
-    let mut done = vec![false; constraints.len()];
+    let mut open: Vec<usize> = (0..constraints.len()).collect();
     let mut conflicts = Vec::new();
     loop {
-        let candidate = (0..constraints.len())
-            .filter(|&i| !done[i])
-            .filter_map(|i| {
+        // What is determined stays so.
+        open.retain(|&i| fixing.is_open(i));
+        let candidate = open
+            .iter()
+            .filter_map(|&i| {
                 let length = fixing.length(i);
                 (length < SHORT).then_some((length - priority[i], i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let Some((_, i)) = candidate else { break };
-        done[i] = true;
-        if fixing.is_open(i) && !fixing.fix(i) {
+        open.retain(|&j| j != i);
+        if !fixing.fix(i) {
             conflicts.push(i);
         }
     }
@@ -166,7 +200,9 @@ fn fix_connections(
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 struct Fixing<'a> {
     constraints: &'a [Constraint],
-    triangles: &'a [[usize; 2]],
+    shapes: &'a [Span],
+    /// The shapes that each constraint takes part in.
+    shapes_of: Vec<Vec<usize>>,
     now: Conditional,
     means: Vec<[f64; 2]>,
     variances: Vec<f64>,
@@ -206,7 +242,8 @@ impl<'a> Fixing<'a> {
             |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
         Self {
             constraints,
-            triangles: &problem.triangles,
+            shapes: &problem.shapes,
+            shapes_of: problem.shapes_of(),
             means: constraints.iter().map(mean).collect(),
             variances: constraints.iter().map(variance).collect(),
             determined: DETERMINED * start.mean_variance(),
@@ -233,6 +270,15 @@ impl<'a> Fixing<'a> {
         let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
         let is_determined: Vec<bool> =
             (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
+        // The shapes that get determined by it.
+        let is_settled = |k: &usize| self.shapes[*k].ways.iter().all(|&j| is_determined[j]);
+        let mut settled: Vec<usize> = (0..self.constraints.len())
+            .filter(|&j| is_determined[j] && self.variances[j] > self.determined)
+            .flat_map(|j| self.shapes_of[j].iter().copied())
+            .filter(is_settled)
+            .collect();
+        settled.sort_unstable();
+        settled.dedup();
         let is_possible = |value: &[i64; 2]| {
             let errors = self.errors(i, &parts, *value);
             let fits = |part: usize| {
@@ -240,13 +286,11 @@ impl<'a> Fixing<'a> {
             };
             let at = |j: usize| self.moved(j, &parts, errors);
             let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
-            let turns = |&[a, b]: &[usize; 2]| {
-                !(is_determined[a] && is_determined[b]) || is_left_turn(at(a), at(b))
-            };
+            let leaves_room = |&k: &usize| self.shapes[k].has_room(at);
             fits(0)
                 && fits(1)
                 && (0..self.constraints.len()).all(allows)
-                && self.triangles.iter().all(turns)
+                && settled.iter().all(leaves_room)
         };
         let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
             return false;
@@ -281,8 +325,12 @@ impl<'a> Fixing<'a> {
     }
 
     fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
-        let coupling = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, spread));
-        let coupling = self.constraints.iter().map(coupling).collect();
+        // What is determined has no covariance with anything.
+        let coupling = |(c, &variance): (&Constraint, &f64)| {
+            let is_open = variance > self.determined;
+            c.rows.each_ref().map(|row| if is_open { apply(row, spread) } else { 0.0 })
+        };
+        let coupling = self.constraints.iter().zip(&self.variances).map(coupling).collect();
         Part { effect, coupling, variance: apply(row, spread) }
     }
 
@@ -340,7 +388,7 @@ mod tests {
         let sum = connection(&[(0, 1), (3, 1)], &[(1, 1), (2, -1)]);
         let connections = [connection(&[(0, 1)], &[(1, 1)]), sum];
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
-        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints, triangles: vec![] }
+        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints, shapes: vec![] }
     }
 
     /// The best integer point within four of the mean that satisfies the constraints.
@@ -386,10 +434,12 @@ mod tests {
             };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
-            problem.triangles = vec![[0, 1]];
+            let sides = vec![[0, 1], [1, 2], [2, 0]];
+            problem.shapes = vec![Span { ways: vec![0, 1], sides }];
             let rounded = round_constrained(&problem).unwrap();
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
-            assert!(rounded.violated == 0 && is_left_turn(a, b), "seed {seed}: {a:?} {b:?}");
+            let cross = a[0] * b[1] - a[1] * b[0];
+            assert!(rounded.violated == 0 && cross > 0.0, "seed {seed}: {a:?} {b:?}");
         }
     }
 

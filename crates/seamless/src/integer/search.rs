@@ -1,7 +1,7 @@
 //! Local search around an integer point.
 
 use super::reduced::Dense;
-use super::rounding::{RoundingProblem, is_left_turn};
+use super::rounding::RoundingProblem;
 
 /// Most moves in all.
 const MOST_MOVES: usize = 300;
@@ -33,8 +33,8 @@ struct Search<'a> {
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
     violated: usize,
-    /// For each constraint the triangles it is a side of.
-    sides: Vec<Vec<usize>>,
+    /// For each constraint the shapes that it takes part in.
+    shapes_of: Vec<Vec<usize>>,
     /// For each coordinate the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
     /// A fall of the energy that counts.
@@ -64,17 +64,14 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        let mut sides = vec![Vec::new(); problem.constraints.len()];
-        for (k, triangle) in problem.triangles.iter().enumerate() {
-            triangle.iter().for_each(|&i| sides[i].push(k));
-        }
+        let shapes_of = problem.shapes_of();
         let gain = 1e-6 * energy.abs() + 1e-12;
         let matrix = &problem.matrix;
         let mut search =
-            Self { problem, matrix, x, gradient, values, violated: 0, sides, moved, gain };
+            Self { problem, matrix, x, gradient, values, violated: 0, shapes_of, moved, gain };
         let every = 0..problem.constraints.len();
         search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
-            + (0..problem.triangles.len()).filter(|&k| !search.turns(k, &[])).count();
+            + (0..problem.shapes.len()).filter(|&k| !search.has_room(k, &[])).count();
         search
     }
 
@@ -82,13 +79,12 @@ impl<'a> Search<'a> {
         self.problem.constraints[i].allows(value.map(|x| x as f64))
     }
 
-    /// Whether a triangle keeps its orientation when some constraints take other values.
-    fn turns(&self, triangle: usize, changed: &[(usize, [i64; 2])]) -> bool {
-        let [a, b] = self.problem.triangles[triangle].map(|i| {
+    /// Whether a shape leaves room when some constraints take other values.
+    fn has_room(&self, shape: usize, changed: &[(usize, [i64; 2])]) -> bool {
+        self.problem.shapes[shape].has_room(|i| {
             let new = changed.iter().find(|(j, _)| *j == i).map(|(_, value)| *value);
             new.unwrap_or(self.values[i]).map(|x| x as f64)
-        });
-        is_left_turn(a, b)
+        })
     }
 
     /// Change of the energy by a single move.
@@ -110,17 +106,17 @@ impl<'a> Search<'a> {
         steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
     }
 
-    /// Violated constraints and triangles after some moves.
+    /// Violated constraints and shapes after some moves.
     fn violated_after(&self, moves: &[Move]) -> usize {
         let changed = self.changed(moves);
-        let mut triangles: Vec<usize> =
-            changed.iter().flat_map(|(i, _)| &self.sides[*i]).copied().collect();
-        triangles.sort_unstable();
-        triangles.dedup();
+        let mut shapes: Vec<usize> =
+            changed.iter().flat_map(|(i, _)| &self.shapes_of[*i]).copied().collect();
+        shapes.sort_unstable();
+        shapes.dedup();
         let before = changed.iter().filter(|(i, _)| !self.allows(*i, self.values[*i])).count()
-            + triangles.iter().filter(|k| !self.turns(**k, &[])).count();
+            + shapes.iter().filter(|k| !self.has_room(**k, &[])).count();
         let after = changed.iter().filter(|(i, value)| !self.allows(*i, *value)).count()
-            + triangles.iter().filter(|k| !self.turns(**k, &changed)).count();
+            + shapes.iter().filter(|k| !self.has_room(**k, &changed)).count();
         self.violated - before + after
     }
 
@@ -142,15 +138,32 @@ impl<'a> Search<'a> {
         moves.into_iter().find(|&(cost, m)| self.is_better(cost, &[m])).map(|(_, m)| vec![m])
     }
 
-    /// The best pair among the cheapest ones.
+    /// The coordinates that move a violated constraint, or a shape without room.
+    fn involved(&self) -> Vec<bool> {
+        let constraints = 0..self.problem.constraints.len();
+        let mut is_bad: Vec<bool> = constraints.map(|i| !self.allows(i, self.values[i])).collect();
+        for (k, span) in self.problem.shapes.iter().enumerate() {
+            if !self.has_room(k, &[]) {
+                span.ways.iter().for_each(|&i| is_bad[i] = true);
+            }
+        }
+        self.moved.iter().map(|moved| moved.iter().any(|(i, _)| is_bad[*i])).collect()
+    }
+
+    /// The best pair among the cheapest ones; while constraints are violated, of those that touch one.
     fn best_pair(&self) -> Option<Vec<Move>> {
         let limit = if self.violated == 0 { -self.gain } else { f64::INFINITY };
+        let involved = if self.violated == 0 { Vec::new() } else { self.involved() };
+        let is_involved = |k: usize| self.violated == 0 || involved[k];
         let mut pairs: Vec<(f64, [Move; 2])> = Vec::new();
         for i in 0..self.x.len() {
             let row = self.matrix.row(i);
             for step in [1, -1] {
                 let own = self.cost((i, step));
                 for (j, entry) in row.iter().enumerate().take(i) {
+                    if !is_involved(i) && !is_involved(j) {
+                        continue;
+                    }
                     for other in [1, -1] {
                         let coupling = 2.0 * (step * other) as f64 * entry;
                         let cost = own + self.cost((j, other)) + coupling;

@@ -13,6 +13,8 @@ use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, components}
 const CLOSE_ENOUGH: f64 = 0.02;
 /// Cell sizes tried to meet it.
 const MOST_SIZES: usize = 4;
+/// A number further off is worth up to as many sizes again, while they get better.
+const FAR_OFF: f64 = 0.05;
 
 /// A certified integer map and how it was made.
 #[derive(Debug, Clone)]
@@ -211,12 +213,15 @@ impl<'p> Run<'p, '_, '_> {
         let mut cell = (area / quads).sqrt();
         let mut best: Option<(f64, f64, Vec<Placed>)> = None;
         let mut tried = 0;
-        while tried < MOST_SIZES {
+        // Whether the last size was the best so far, and still far off.
+        let mut is_promising = false;
+        while tried < MOST_SIZES || (tried < 2 * MOST_SIZES && is_promising) {
             tried += 1;
             let placed = self.place_all(cell)?;
             let ratio = placed.iter().map(|p| p.stats.quads).sum::<f64>() / quads;
             let off = (ratio - 1.0).abs();
             let is_refined = placed.iter().any(|p| p.stats.refinements > 0);
+            is_promising = off > FAR_OFF && best.as_ref().is_some_and(|b| off < b.0);
             if best.as_ref().is_none_or(|b| off < b.0) {
                 best = Some((off, cell, placed));
             }
