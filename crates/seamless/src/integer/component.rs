@@ -243,14 +243,16 @@ impl<'a> IntegerProblem<'a> {
             stats.nudges = k.min(NEARBY.len() - 1);
             stats.refinements = (k + 1).saturating_sub(NEARBY.len());
             let h = factor * cell / self.unit;
-            match self.attempt(h, column, &mut stats, watch) {
-                Ok((corner_uvs, columns)) => {
-                    stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
-                    return Ok(Placed { corner_uvs, columns, stats });
-                }
-                Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
-                Err(failure) => {
-                    first.get_or_insert(failure);
+            for &care in if is_single { &Care::ALL[..1] } else { &Care::ALL[..] } {
+                match self.attempt(h, care, column, &mut stats, watch) {
+                    Ok((corner_uvs, columns)) => {
+                        stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
+                        return Ok(Placed { corner_uvs, columns, stats });
+                    }
+                    Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
+                    Err(failure) => {
+                        first.get_or_insert(failure);
+                    }
                 }
             }
         }
@@ -261,14 +263,15 @@ impl<'a> IntegerProblem<'a> {
     fn attempt(
         &mut self,
         h: f64,
+        care: Care,
         column: i64,
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
         let (held, y) = match self.options.rounding {
-            IntegerRounding::Constrained => self.round_and_move(h, stats, watch)?,
+            IntegerRounding::Constrained => self.round_and_move(h, care, stats, watch)?,
             IntegerRounding::Greedy => {
-                let rounding = self.rounding_problem(h)?;
+                let rounding = self.rounding_problem(h, care)?;
                 let held = self.space.expand(&round_greedily(&rounding)?.x)?;
                 let y = self.follow(&in_layout(&held, h));
                 (held, y)
@@ -285,12 +288,13 @@ impl<'a> IntegerProblem<'a> {
     fn round_and_move(
         &mut self,
         h: f64,
+        care: Care,
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<i64>, Vec<f64>), IntegerFailure> {
         watch.tick(0.1)?;
         let clock = Instant::now();
-        let rounding = self.rounding_problem(h)?;
+        let rounding = self.rounding_problem(h, care)?;
         let rounded = round_constrained(&rounding)?;
         let held = self.space.expand(&rounded.x)?;
         stats.constraints = rounding.constraints.len();
@@ -327,7 +331,7 @@ impl<'a> IntegerProblem<'a> {
         Ok(all)
     }
 
-    fn rounding_problem(&mut self, h: f64) -> Result<RoundingProblem, Overflow> {
+    fn rounding_problem(&mut self, h: f64, care: Care) -> Result<RoundingProblem, Overflow> {
         let radius = CONSTRAINED_LENGTH * h;
         if radius > self.near.0 {
             let z = self.problem.space().expand(&self.y);
@@ -338,7 +342,9 @@ impl<'a> IntegerProblem<'a> {
         let mut constraints: Vec<Constraint> =
             short.map(|c| Constraint::new(c, &self.coordinates, h)).collect();
         let mut spans = Vec::new();
-        for shape in self.shapes.iter().filter(|shape| shape.extent < radius) {
+        let matters =
+            |shape: &&Shape| shape.extent < radius && (shape.is_face || care == Care::Vertices);
+        for shape in self.shapes.iter().filter(matters) {
             let first = constraints.len();
             constraints.extend(shape.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h)));
             let ways = (first..constraints.len()).collect();
@@ -382,6 +388,20 @@ impl<'a> IntegerProblem<'a> {
         let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
         Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
     }
+}
+
+/// Which shapes of grid points the rounding keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Care {
+    /// Faces of the mesh.
+    Faces,
+    /// Those around vertices as well: more than is needed, but the way is blocked less often.
+    Vertices,
+}
+
+impl Care {
+    /// In the order in which they are tried.
+    const ALL: [Self; 2] = [Self::Faces, Self::Vertices];
 }
 
 /// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.

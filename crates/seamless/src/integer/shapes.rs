@@ -27,6 +27,8 @@ pub struct Shape {
     pub sides: Vec<[usize; 2]>,
     /// Distance of the two nearest points, in the units of the layout.
     pub extent: f64,
+    /// Whether it is a face of the mesh: it then has nothing else that could give way.
+    pub is_face: bool,
 }
 
 /// A grid point at the other end of a spoke.
@@ -121,8 +123,8 @@ fn gap(scene: &Scene<'_>, own: &Form, ends: [&Tip; 2]) -> Result<Option<Shape>, 
     let [a, b] = ends;
     // Wider gaps may open to half a turn; a needle's angle is positive, whatever its digits say.
     let angle = (a.way.conj() * b.way).arg();
-    let is_wide = angle < 0.0 || angle > WIDEST_GAP || b.spoke - a.spoke > 1 && angle > PI / 2.0;
-    if is_wide {
+    let widest = if b.spoke == a.spoke + 1 { WIDEST_GAP } else { 0.5 * PI };
+    if !(0.0..=widest).contains(&angle) {
         return Ok(None);
     }
     let way = |tip: &Tip| {
@@ -132,7 +134,8 @@ fn gap(scene: &Scene<'_>, own: &Form, ends: [&Tip; 2]) -> Result<Option<Shape>, 
     };
     let extent = (b.way - a.way).norm().min(a.way.norm()).min(b.way.norm());
     let sides = vec![[0, 1], [1, 2], [2, 0]];
-    Ok(Some(Shape { ways: vec![way(a)?, way(b)?], sides, extent }))
+    let is_face = b.spoke == a.spoke + 1;
+    Ok(Some(Shape { ways: vec![way(a)?, way(b)?], sides, extent, is_face }))
 }
 
 /// The grid points around an ordinary vertex, the first of which comes again at the end unless the vertex is
@@ -142,7 +145,7 @@ fn star(scene: &Scene<'_>, tips: &[Tip], is_open: bool) -> Result<Option<Shape>,
     let sides: Vec<[usize; 2]> = (1..tips.len())
         .filter(|&k| {
             let angle = (tips[k - 1].way.conj() * tips[k].way).arg();
-            angle >= 0.0 && angle < WIDEST_GAP
+            (0.0..WIDEST_GAP).contains(&angle)
         })
         .map(|k| [k - 1, k % n])
         .collect();
@@ -159,7 +162,7 @@ fn star(scene: &Scene<'_>, tips: &[Tip], is_open: bool) -> Result<Option<Shape>,
         let nearest = tips[..k].iter().map(|other| (other.way - tip.way).norm());
         extent = nearest.fold(extent, f64::min);
     }
-    Ok(Some(Shape { ways, sides, extent }))
+    Ok(Some(Shape { ways, sides, extent, is_face: false }))
 }
 
 /// Whether there is a place on the left of all sides; `at` gives the points, the origin included.
