@@ -44,9 +44,9 @@ fn system(seed: u64, is_real: bool) -> System {
         for row in &mut matrix {
             row[to] = plus(row[to], c.times(row[from]).unwrap());
         }
-        for j in 0..n {
-            let x = c.negated().times(inverse[to][j]).unwrap();
-            inverse[from][j] = plus(inverse[from][j], x);
+        let added = inverse[to].clone();
+        for (entry, x) in inverse[from].iter_mut().zip(added) {
+            *entry = plus(*entry, c.negated().times(x).unwrap());
         }
     }
     // What must vanish are the other rows of the inverse; mixed, multiplied and with some to spare.

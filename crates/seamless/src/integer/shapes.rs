@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use seamstress_surface::{Halfedge, Vertex};
 use std::f64::consts::PI;
 
-/// Gaps of angle up to this, as seen from the vertex, are to stay below half a turn, radians.
+/// Gaps of angle up to this, as seen from an ordinary vertex, are to stay below half a turn, radians.
 const WIDEST_GAP: f64 = 0.95 * PI;
 /// Half the side of the square in which a place is looked for, grid units.
 const REACH: f64 = 1e4;
@@ -121,10 +121,10 @@ fn tips(scene: &Scene<'_>, fan: &[Halfedge]) -> Result<Vec<Tip>, Overflow> {
 /// Two consecutive grid points around a grid point: the angle between them must stay positive.
 fn gap(scene: &Scene<'_>, own: &Form, ends: [&Tip; 2]) -> Result<Option<Shape>, Overflow> {
     let [a, b] = ends;
-    // Wider gaps may open to half a turn; a needle's angle is positive, whatever its digits say.
+    let is_face = b.spoke == a.spoke + 1;
     let angle = (a.way.conj() * b.way).arg();
-    let widest = if b.spoke == a.spoke + 1 { WIDEST_GAP } else { 0.5 * PI };
-    if !(0.0..=widest).contains(&angle) {
+    // A gap of several faces may open to half a turn and more.
+    if !is_face && !(0.0..=0.5 * PI).contains(&angle) {
         return Ok(None);
     }
     let way = |tip: &Tip| {
@@ -134,7 +134,6 @@ fn gap(scene: &Scene<'_>, own: &Form, ends: [&Tip; 2]) -> Result<Option<Shape>, 
     };
     let extent = (b.way - a.way).norm().min(a.way.norm()).min(b.way.norm());
     let sides = vec![[0, 1], [1, 2], [2, 0]];
-    let is_face = b.spoke == a.spoke + 1;
     Ok(Some(Shape { ways: vec![way(a)?, way(b)?], sides, extent, is_face }))
 }
 
