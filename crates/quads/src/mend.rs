@@ -287,8 +287,8 @@ mod tests {
             let mut rng = Rng::new(seed);
             let mut tangled = positions.clone();
             let centre = positions.iter().position(|p| p[0] == 0.0 && p[1] == 0.0).unwrap();
-            for k in 0..2 {
-                tangled[centre][k] += side * (3.0 * rng.unit() - 1.5);
+            for x in &mut tangled[centre][..2] {
+                *x += side * (3.0 * rng.unit() - 1.5);
             }
             let before = QuadMesh::new(tangled, quads.clone()).unwrap();
             let mended = mend(&before, surface, &MendOptions::default()).unwrap();

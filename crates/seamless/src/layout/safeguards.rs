@@ -150,7 +150,8 @@ const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 15, tolerance: 1e-
 /// Lays out matched seams exactly: rigid layout and untangling, barrier homotopy, lifted continuation,
 /// the same over a better dual tree, the homotopies in snowflake metrics, in this order, until one has
 /// no flip and no wrong angle. (No flip alone is not enough: a vertex may be wound once too often.) With
-/// aligned edges the new tree and the snowflake metrics are left out.
+/// aligned edges the barrier is the last: continuations cost more and gave nothing that the release of an edge
+/// does not.
 ///
 /// `start`: frames in the gauge of the all-seam cut.
 ///
@@ -289,7 +290,7 @@ enum Attempt {
 }
 
 impl Homotopies {
-    /// Barrier, continuation and, unless edges are aligned, continuation over a new tree.
+    /// Barrier and, unless edges are aligned, continuation, and continuation over a new tree.
     fn run(
         &mut self,
         sectors: &Sectors<'_>,
@@ -303,15 +304,15 @@ impl Homotopies {
             Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
+        if sectors.any_aligned() {
+            // The next one takes several times as long; releasing an edge is the better way out.
+            return Ok(Attempt::Failed(Box::new(matched)));
+        }
         let closed = homotopy::continuation(sectors, metric, &matched, &settings, watch)?;
         let matched = match self.accept(sectors, metric, matched, closed, Route::Continuation)? {
             Attempt::Failed(matched) => *matched,
             laid => return Ok(laid),
         };
-        if sectors.any_aligned() {
-            // Each try costs as much as all before it; releasing an edge is the better way out.
-            return Ok(Attempt::Failed(Box::new(matched)));
-        }
         let other = retree(sectors, metric, &matched);
         let closed = homotopy::continuation(sectors, metric, &other, &settings, watch)?;
         Ok(match self.accept(sectors, metric, other, closed, Route::Retreed)? {
