@@ -27,14 +27,14 @@ fn plus(a: Gauss, b: Gauss) -> Gauss {
 
 fn system(seed: u64, is_real: bool) -> System {
     let mut rng = Rng::new(seed);
-    let n = 2 + rng.below(5);
+    let n = 2 + rng.below(4);
     let rank = rng.below(n + 1);
     let identity = |i: usize| -> Vec<Gauss> {
         (0..n).map(|j| if i == j { Gauss::ONE } else { Gauss::ZERO }).collect()
     };
     let mut matrix: Vec<Vec<Gauss>> = (0..n).map(identity).collect();
     let mut inverse = matrix.clone();
-    for _ in 0..2 * n {
+    for _ in 0..n {
         // Adds a multiple of one column to another, and takes it from the rows of the inverse.
         let (from, to) = (rng.below(n), rng.below(n));
         let c = small(&mut rng, is_real);
