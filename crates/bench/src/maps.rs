@@ -30,7 +30,8 @@ pub fn seamless(
     }
     let start = Instant::now();
     let mut go_on = |_| ControlFlow::Continue(());
-    let options = MapOptions::default();
+    // As for quad meshes: no cone of a single quarter turn.
+    let options = MapOptions { largest_index: 2, ..MapOptions::default() };
     let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = kept {

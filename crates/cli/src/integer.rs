@@ -14,14 +14,17 @@ use crate::text::{self, counted, figure, row};
 use seamstress::integer::{IntegerCertificate, IntegerStats};
 use seamstress::map::compare_source;
 use seamstress::{
-    GridSize, IntegerError, IntegerOptions, IntegerSolution, MapError, SeamlessMap, Violations,
-    make_aligned_map, to_aligned_integer_map,
+    GridSize, IntegerError, IntegerOptions, IntegerSolution, MapError, MapOptions, SeamlessMap,
+    Violations, make_aligned_map, to_aligned_integer_map,
 };
 use seamstress_io::{MapObj, write_map_obj};
 use seamstress_surface::TriMesh;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
+
+/// Every vertex of a quad mesh has two quads at least.
+const LARGEST_INDEX: i32 = 2;
 
 /// The work done, and nothing written yet.
 struct Product {
@@ -169,7 +172,8 @@ pub(crate) fn make_seamless(
     connectivity: &TriMesh,
     worker: &mut Worker,
 ) -> Result<SeamlessStart, Failure> {
-    let (positions, options) = (&mesh.soup.positions, cones.options());
+    let positions = &mesh.soup.positions;
+    let options = MapOptions { largest_index: LARGEST_INDEX, ..cones.options() };
     let FeatureArgs { features: sources, align_boundary } = features;
     let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
     let mut observe = |progress| worker.observe(progress);

@@ -5,4 +5,5 @@ mod sectors;
 
 pub use conflicts::{ReleaseReason, ReleasedFeature};
 pub(crate) use conflicts::{drop_conflicts, release_near};
+pub(crate) use sectors::LARGEST_INDEX;
 pub use sectors::{Road, Sectors};

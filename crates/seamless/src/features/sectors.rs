@@ -35,6 +35,7 @@ pub struct Sectors<'m> {
     aligned: HalfedgeData<bool>,
     kind: VertexData<Kind>,
     preferred: VertexData<i32>,
+    largest_index: i32,
 }
 
 /// An edge along which a unit of index can leave a sector.
@@ -60,6 +61,7 @@ impl<'m> Sectors<'m> {
             aligned: HalfedgeData::filled(mesh.n_halfedges(), false),
             kind: mesh.vertices().map(kind).collect(),
             preferred: VertexData::filled(mesh.n_vertices(), 0),
+            largest_index: LARGEST_INDEX,
         }
     }
 
@@ -98,7 +100,8 @@ impl<'m> Sectors<'m> {
             }
         });
         let preferred = preferred.collect();
-        Self { mesh, slit: Cow::Owned(slit), vertex, aligned, kind, preferred }
+        let slit = Cow::Owned(slit);
+        Self { mesh, slit, vertex, aligned, kind, preferred, largest_index: LARGEST_INDEX }
     }
 
     /// The mesh.
@@ -174,10 +177,22 @@ impl<'m> Sectors<'m> {
         metric.curvature(self.slit()).enumerate().map(bend).collect()
     }
 
+    /// The same with no cone of a larger index.
+    #[must_use]
+    pub fn with_largest_index(mut self, largest: i32) -> Self {
+        self.largest_index = largest;
+        self
+    }
+
     /// Smallest and largest index of a sector that triangles can make; see [`index_bounds`].
     #[must_use]
     pub fn bounds(&self, sector: Vertex) -> (i32, i32) {
-        bounds(&self.slit, sector)
+        let (low, high) = bounds(&self.slit, sector);
+        if self.slit.is_boundary(sector) {
+            (low, high)
+        } else {
+            (low, high.min(self.largest_index))
+        }
     }
 
     /// Angle of a sector of given index, quarters.
@@ -217,8 +232,8 @@ impl<'m> Sectors<'m> {
     }
 }
 
-/// A cone of a single quarter turn would become a vertex of a single quad: none unless it is prescribed.
-const MOST_CONE_INDEX: i32 = 2;
+/// A cone keeps a quarter turn at least.
+pub(crate) const LARGEST_INDEX: i32 = 3;
 
 fn base(slit: &TriMesh, sector: Vertex) -> f64 {
     if slit.is_boundary(sector) { 2.0 } else { 4.0 }
@@ -226,5 +241,5 @@ fn base(slit: &TriMesh, sector: Vertex) -> f64 {
 
 fn bounds(slit: &TriMesh, sector: Vertex) -> (i32, i32) {
     let (low, high) = index_bounds(slit.valence(sector));
-    if slit.is_boundary(sector) { (low - 2, high - 2) } else { (low, high.min(MOST_CONE_INDEX)) }
+    if slit.is_boundary(sector) { (low - 2, high - 2) } else { (low, high) }
 }

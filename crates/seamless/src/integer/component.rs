@@ -34,8 +34,8 @@ const CONSTRAINED_LENGTH: f64 = 2.5;
 const NEARBY: [f64; 3] = [1.0, 0.98, 1.02];
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
-/// Finer grids tried.
-const MOST_REFINEMENTS: usize = 24;
+/// Finer grids tried, as powers of that.
+const REFINEMENTS: [usize; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 const SHIFT: f64 = 1e-8;
 const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
 
@@ -217,14 +217,15 @@ impl<'a> IntegerProblem<'a> {
         0.5 * doubled.sum::<f64>() * self.unit * self.unit
     }
 
-    /// The integer map for cells of a size in mesh units, or of the first other one that works, nearby or
-    /// finer; its UVs begin at a column.
+    /// The integer map for cells of a size in mesh units, or of the first other one that works, nearby or,
+    /// if it may be, finer; its UVs begin at a column.
     ///
     /// # Errors
     /// [`IntegerFailure`], of the first grid.
     pub(super) fn solve(
         &mut self,
         cell: f64,
+        may_be_finer: bool,
         column: i64,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Placed, IntegerFailure> {
@@ -234,15 +235,15 @@ impl<'a> IntegerProblem<'a> {
             seconds_reduction: self.seconds,
             ..Default::default()
         };
-        let nearby = NEARBY.map(f64::sqrt);
-        let finer = (1..=MOST_REFINEMENTS as i32).map(|k| REFINEMENT.powf(-0.5 * f64::from(k)));
-        let grids = nearby.into_iter().chain(finer).enumerate();
+        let nearby = NEARBY.into_iter().enumerate().map(|(k, share)| (k, 0, share));
+        let finer = REFINEMENTS.iter().filter(|_| may_be_finer);
+        let finer = finer.map(|&k| (0, k, REFINEMENT.powi(-(k as i32))));
+        let grids = nearby.chain(finer);
         let is_single = self.options.rounding == IntegerRounding::Greedy;
         let mut first = None;
-        for (k, factor) in grids.take(if is_single { 1 } else { usize::MAX }) {
-            stats.nudges = k.min(NEARBY.len() - 1);
-            stats.refinements = (k + 1).saturating_sub(NEARBY.len());
-            let h = factor * cell / self.unit;
+        for (nudges, refinements, share) in grids.take(if is_single { 1 } else { usize::MAX }) {
+            (stats.nudges, stats.refinements) = (nudges, refinements);
+            let h = share.sqrt() * cell / self.unit;
             for &care in if is_single { &Care::ALL[..1] } else { &Care::ALL[..] } {
                 match self.attempt(h, care, column, &mut stats, watch) {
                     Ok((corner_uvs, columns)) => {
@@ -251,7 +252,12 @@ impl<'a> IntegerProblem<'a> {
                     }
                     Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
                     Err(failure) => {
+                        // What already conflicts does so with more care, too.
+                        let is_conflict = matches!(failure, IntegerFailure::Conflict { .. });
                         first.get_or_insert(failure);
+                        if is_conflict {
+                            break;
+                        }
                     }
                 }
             }

@@ -107,6 +107,8 @@ pub struct Rounded {
 const SHORT: f64 = 2.0;
 /// Restarts with other priorities.
 const MOST_RESTARTS: usize = 5;
+/// More violated connections than this are left to a finer grid.
+const HOPELESS: usize = 16;
 /// How much a restart moves a connection forward, grid units of length.
 const PRIORITY: f64 = 10.0;
 /// Values tried for a connection, the cheapest first.
@@ -147,7 +149,7 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
         if best.as_ref().is_none_or(|b| key < (b.0, b.1)) {
             best = Some((key.0, key.1, x));
         }
-        if violated.is_empty() || restarts == MOST_RESTARTS {
+        if violated.is_empty() || violated.len() > HOPELESS || restarts == MOST_RESTARTS {
             break;
         }
         restarts += 1;

@@ -15,6 +15,9 @@ const CLOSE_ENOUGH: f64 = 0.02;
 const MOST_SIZES: usize = 4;
 /// A number further off is worth up to as many sizes again, while they get better.
 const FAR_OFF: f64 = 0.05;
+/// Most that a cell is lengthened by at once. Where cones are dense, their number sets the least number of quads,
+/// whatever is asked for.
+const LARGEST_CHANGE: f64 = 1.2;
 
 /// A certified integer map and how it was made.
 #[derive(Debug, Clone)]
@@ -206,8 +209,10 @@ impl<'p> Run<'p, '_, '_> {
     fn solve(&mut self, size: GridSize) -> Result<(f64, Vec<Placed>, usize), IntegerError> {
         let area: f64 = self.problems.iter().map(IntegerProblem::area).sum();
         let quads = match size {
-            GridSize::EdgeLength(cell) => return Ok((cell, self.place_all(cell)?, 1)),
-            GridSize::Scale(scale) => return Ok((1.0 / scale, self.place_all(1.0 / scale)?, 1)),
+            GridSize::EdgeLength(cell) => return Ok((cell, self.place_all(cell, true)?, 1)),
+            GridSize::Scale(scale) => {
+                return Ok((1.0 / scale, self.place_all(1.0 / scale, true)?, 1));
+            }
             GridSize::Quads(quads) => quads,
         };
         let mut cell = (area / quads).sqrt();
@@ -217,7 +222,10 @@ impl<'p> Run<'p, '_, '_> {
         let mut is_promising = false;
         while tried < MOST_SIZES || (tried < 2 * MOST_SIZES && is_promising) {
             tried += 1;
-            let placed = self.place_all(cell)?;
+            let placed = match self.place_all(cell, best.is_none()) {
+                Err(IntegerError::Component { .. }) if best.is_some() => break,
+                placed => placed?,
+            };
             let ratio = placed.iter().map(|p| p.stats.quads).sum::<f64>() / quads;
             let off = (ratio - 1.0).abs();
             let is_refined = placed.iter().any(|p| p.stats.refinements > 0);
@@ -228,20 +236,20 @@ impl<'p> Run<'p, '_, '_> {
             if off < CLOSE_ENOUGH || is_refined {
                 break;
             }
-            cell *= ratio.sqrt();
+            cell *= ratio.sqrt().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
         }
         let (_, cell, placed) = best.ok_or(IntegerError::BadSize)?;
         Ok((cell, placed, tried))
     }
 
-    /// All components on one grid, side by side.
-    fn place_all(&mut self, cell: f64) -> Result<Vec<Placed>, IntegerError> {
+    /// All components on one grid, side by side, each on a finer one if that is allowed and needed.
+    fn place_all(&mut self, cell: f64, may_be_finer: bool) -> Result<Vec<Placed>, IntegerError> {
         let mut column = 0;
         let mut all = Vec::with_capacity(self.pieces.len());
         for k in 0..self.pieces.len() {
             let mut watch = Watch::new(self.observer, k, self.pieces.len());
             watch.enter(Stage::Integers)?;
-            let placed = self.problems[k].solve(cell, column, &mut watch);
+            let placed = self.problems[k].solve(cell, may_be_finer, column, &mut watch);
             let placed = placed.map_err(|cause| self.error(k, cause))?;
             // One empty column between components.
             column += placed.columns + 1;

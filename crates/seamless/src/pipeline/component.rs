@@ -53,7 +53,10 @@ pub(super) fn map_component(
     let metric = Metric::from_positions(mesh, &positions);
     let (mut features, mut released) =
         drop_conflicts(mesh, &positions, &metric, in_component(features, piece));
-    let mut sectors = Sectors::new(mesh, &metric, &features);
+    let sectors_of = |features: &EdgeSet| {
+        Sectors::new(mesh, &metric, features).with_largest_index(options.largest_index)
+    };
+    let mut sectors = sectors_of(&features);
     let mut begun = None;
     for round in 0..=RELEASE_ROUNDS {
         if features.is_empty() {
@@ -69,7 +72,7 @@ pub(super) fn map_component(
             _ => VertexData::filled(mesh.n_vertices(), true),
         };
         let (kept, more) = release_near(mesh, near, round, &features);
-        let fewer = Sectors::new(mesh, &metric, &kept);
+        let fewer = sectors_of(&kept);
         // What was rounded stays, unless it was at fault itself.
         begun = begun.and_then(|b: Begun| b.with_fewer_aligned(&sectors, &fewer, &metric).ok());
         (features, sectors) = (kept, fewer);
@@ -87,7 +90,7 @@ fn map_unaligned(
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
-    let sectors = Sectors::unaligned(mesh);
+    let sectors = Sectors::unaligned(mesh).with_largest_index(options.largest_index);
     let mut first_failure = None;
     for exponent in EXPONENTS {
         match solve(&sectors, metric, exponent, start, &mut None, options, watch) {

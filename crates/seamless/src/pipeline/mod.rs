@@ -14,7 +14,7 @@ pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relay
 pub use start::Start;
 
 use crate::consistency::ConsistencyError;
-use crate::features::ReleasedFeature;
+use crate::features::{LARGEST_INDEX, ReleasedFeature};
 use crate::field::{FieldError, PrescriptionError};
 use crate::layout::exact::Defects;
 use crate::layout::objective::Objective;
@@ -39,6 +39,9 @@ pub struct MapOptions {
     /// cones as rounded. Whatever the price, clean-up is undone where it raises tau by more than 5 % or
     /// the energy's excess over 4 by more than 20 %.
     pub cone_price: f64,
+    /// Largest index of a cone that is not prescribed, quarters. One of 3 has a quarter turn, the best there is
+    /// for a sharp spike, and would become a vertex of a single quad: 2 for quad meshes.
+    pub largest_index: i32,
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`]) rather than a
     /// line in the result.
     pub strict_features: bool,
@@ -56,6 +59,7 @@ impl Default for MapOptions {
         Self {
             rounding: RoundingOptions::default(),
             cone_price: 0.0006,
+            largest_index: LARGEST_INDEX,
             strict_features: false,
             polish: Some(PolishOptions::default()),
             objective: None,
