@@ -45,7 +45,7 @@ const FINER: f64 = 1.1;
 /// for the grid it is given.
 ///
 /// # Errors
-/// What `make` and [`extract`] return, and the faults of the quads of the finest grid tried.
+/// What `make` and [`extract()`] return, and the faults of the quads of the finest grid tried.
 pub fn manifold_quads<E>(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
