@@ -31,7 +31,7 @@ use std::time::Instant;
 const CONSTRAINED_LENGTH: f64 = 2.5;
 /// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
 /// within a few percent, but other integers are near.
-const NEARBY: [f64; 3] = [1.0, 0.98, 1.02];
+const NEARBY: [f64; 7] = [1.0, 0.98, 1.02, 0.99, 1.01, 0.97, 1.03];
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried, as powers of that.
