@@ -1,6 +1,22 @@
-//! What the operating system says about this process; Linux only.
+//! What the operating system says about this process, on Linux only, and how it ends.
 
+use std::error::Error;
 use std::fs;
+use std::process::ExitCode;
+
+/// How a program ends: 0 if all went well, 1 if something measured did not, 2 after an error, which is told on
+/// standard error.
+#[expect(clippy::print_stderr, reason = "these programs tell their errors there")]
+pub fn exit_code(outcome: Result<bool, Box<dyn Error>>) -> ExitCode {
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
 
 /// CPU seconds of all threads so far, in user and system mode, in steps of a hundredth.
 pub fn cpu_seconds() -> Option<f64> {

@@ -14,6 +14,7 @@ use seamstress::{
 use seamstress_bench::maps::{seamless, write_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
+use seamstress_bench::process::exit_code;
 use serde_json::Value;
 use std::error::Error;
 use std::fs::{self, File};
@@ -77,14 +78,7 @@ const TITLES: [&str; 13] = [
 ];
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether every run gave an integer map that the verifier accepts.

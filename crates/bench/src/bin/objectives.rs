@@ -11,7 +11,7 @@ use seamstress::quality::{Measure, SingularValues, Summary, distance_to_frames, 
 use seamstress::{MapOptions, Objective, RelayoutOptions, SeamlessMap, make_map, relayout};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh, name};
-use seamstress_bench::process::cpu_seconds;
+use seamstress_bench::process::{cpu_seconds, exit_code};
 use seamstress_io::{MapObj, write_map_obj};
 use seamstress_surface::{Metric, TriMesh};
 use serde_json::Value;
@@ -44,14 +44,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether every objective is best at its own measure, without flips.

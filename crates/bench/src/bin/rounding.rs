@@ -12,7 +12,7 @@ use seamstress::rounding::RoundingStrategy;
 use seamstress::{MapError, MapOptions, MapSolution, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
-use seamstress_bench::process::cpu_seconds;
+use seamstress_bench::process::{cpu_seconds, exit_code};
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;
@@ -76,14 +76,7 @@ enum Against {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether every mesh was mapped with each strategy.

@@ -14,7 +14,7 @@ use seamstress::layout::triangle::triangles;
 use seamstress::{MapOptions, Stage, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
-use seamstress_bench::process::{cpu_seconds, forget_peak_memory, peak_memory};
+use seamstress_bench::process::{cpu_seconds, exit_code, forget_peak_memory, peak_memory};
 use seamstress_surface::{Component, Metric, TriMesh, components};
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -44,14 +44,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether all meshes could be measured.

@@ -4,10 +4,11 @@ use super::certificate::IntegerMap;
 use super::component::{IntegerFailure, IntegerProblem, IntegerStats, Placed};
 use super::{GridSize, IntegerOptions};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
+use crate::pipeline::in_component;
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use seamstress_surface::features::EdgeSet;
-use seamstress_surface::{Component, Face, Halfedge, Metric, TriMesh, components};
+use seamstress_surface::{Component, Face, Metric, TriMesh, components};
 
 /// The number of quads asked for is met when it is this close.
 const CLOSE_ENOUGH: f64 = 0.02;
@@ -194,9 +195,7 @@ impl<'p> Run<'p, '_, '_> {
         let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &positions);
         let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
-        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
-        let here = piece.mesh.halfedges().filter(|h| aligned.contains(whole(h)));
-        let aligned = EdgeSet::new(&piece.mesh, here);
+        let aligned = in_component(aligned, piece);
         let problem = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
             .map_err(IntegerFailure::Uncertified)
             .and_then(|map| IntegerProblem::new(&piece.mesh, &metric, &map, &aligned, options))

@@ -20,13 +20,14 @@ use crate::layout::exact::Defects;
 use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::layout::safeguards::{LayoutError, Route};
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use crate::map::{Alignment, SeamlessMap, Tolerance, Violations};
 use crate::mixed_integer::MixedIntegerStats;
 use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
-use parts::Outcome;
+pub(crate) use parts::in_component;
+use parts::{Outcome, Whole};
 use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Component, Face, Metric, TriMesh, Vertex, components};
 
@@ -257,16 +258,10 @@ fn run(
         outcome.add(piece, &mapped.features, &mapped.released);
         Ok((mapped.uvs, mapped.stats))
     })?;
-    if options.strict_features && !outcome.released.is_empty() {
-        return Err(MapError::Released { released: outcome.released });
-    }
+    let Whole { map, features, alignment, released } =
+        outcome.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
     let metric = Metric::from_positions(mesh, positions);
-    let distortion = distortion(mesh, &metric, &corner_uvs);
-    let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    let features = outcome.kept(mesh);
-    let tolerance = AlignmentTolerance::default();
-    let alignment = Alignment::certify(mesh, &map, &features.vertex_pairs(mesh), &tolerance)?;
-    let released = outcome.released;
+    let distortion = distortion(mesh, &metric, map.corner_uvs());
     Ok(MapSolution { map, distortion, features, alignment, released, components })
 }
 

@@ -1,13 +1,14 @@
-//! Features of the mesh and of its components.
+//! Features of the mesh and of its components, and the certificate of the whole.
 
+use super::MapError;
 use crate::features::{ReleaseReason, ReleasedFeature};
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violation, Violations};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Component, Halfedge, TriMesh, Vertex};
 use std::collections::BTreeSet;
 
 /// The edges of a set in a component, in its own ids.
-pub(super) fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
+pub(crate) fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
     let local = |h: &Halfedge| {
         let whole = piece.faces[h.face().at()].halfedge(h.side());
         edges.contains(whole)
@@ -19,6 +20,14 @@ pub(super) fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
     kept: Vec<Halfedge>,
+    released: Vec<ReleasedFeature>,
+}
+
+/// A certified map of all components, with what became of the features.
+pub(super) struct Whole {
+    pub(super) map: SeamlessMap,
+    pub(super) features: EdgeSet,
+    pub(super) alignment: Alignment,
     pub(super) released: Vec<ReleasedFeature>,
 }
 
@@ -33,9 +42,26 @@ impl Outcome {
         }));
     }
 
-    /// The edges that are aligned.
-    pub(super) fn kept(&self, mesh: &TriMesh) -> EdgeSet {
-        EdgeSet::new(mesh, self.kept.iter().copied())
+    /// Certifies the map of all components; if it is strict about features, none may be released.
+    ///
+    /// # Errors
+    /// [`MapError::Released`] or [`MapError::Uncertified`].
+    pub(super) fn certify(
+        self,
+        mesh: &TriMesh,
+        corner_uvs: Vec<[f64; 2]>,
+        is_strict: bool,
+        tolerance: &Tolerance,
+    ) -> Result<Whole, MapError> {
+        let Self { kept, released } = self;
+        if is_strict && !released.is_empty() {
+            return Err(MapError::Released { released });
+        }
+        let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
+        let features = EdgeSet::new(mesh, kept);
+        let pairs = features.vertex_pairs(mesh);
+        let alignment = Alignment::certify(mesh, &map, &pairs, &AlignmentTolerance::default())?;
+        Ok(Whole { map, features, alignment, released })
     }
 }
 

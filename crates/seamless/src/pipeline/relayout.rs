@@ -1,7 +1,7 @@
 //! Laying a given map out anew, for another objective.
 
 use super::component::corner_uvs;
-use super::parts::{Outcome, followed, in_component};
+use super::parts::{Outcome, Whole, followed, in_component};
 use super::{MapError, by_component};
 use crate::features::{ReleasedFeature, Sectors};
 use crate::layout::anisotropy::Anisotropy;
@@ -161,16 +161,10 @@ fn run(
         outcome.add(piece, &kept, &released);
         improve(piece, &metric, &map, &kept, options, watch)
     })?;
-    if options.strict_features && !outcome.released.is_empty() {
-        return Err(MapError::Released { released: outcome.released });
-    }
+    let Whole { map, features, alignment, released } =
+        outcome.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
     let metric = Metric::from_positions(mesh, positions);
-    let distortion = distortion(mesh, &metric, &corner_uvs);
-    let map = SeamlessMap::certify(mesh, corner_uvs, &options.tolerance)?;
-    let features = outcome.kept(mesh);
-    let tolerance = AlignmentTolerance::default();
-    let alignment = Alignment::certify(mesh, &map, &features.vertex_pairs(mesh), &tolerance)?;
-    let released = outcome.released;
+    let distortion = distortion(mesh, &metric, map.corner_uvs());
     Ok(Relayout { map, distortion, features, alignment, released, components })
 }
 

@@ -14,6 +14,7 @@ use measure::{Measurement, measure};
 use seamstress::layout::conic::Solver;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::name;
+use seamstress_bench::process::exit_code;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -81,14 +82,7 @@ impl From<SolverChoice> for Solver {
 const AGREEMENT: f64 = 1e-4;
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether all optima agree.

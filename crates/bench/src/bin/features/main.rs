@@ -13,7 +13,7 @@ use clap::Parser;
 use seamstress::{MapOptions, MapSolution, Sectors, make_aligned_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
-use seamstress_bench::process::cpu_seconds;
+use seamstress_bench::process::{cpu_seconds, exit_code};
 use seamstress_surface::features::{EdgeSet, sharp_edges};
 use seamstress_surface::{Halfedge, Metric, VertexData};
 use std::error::Error;
@@ -61,14 +61,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 const TITLES: [&str; 14] = [

@@ -14,6 +14,7 @@ use seamstress::{GridSize, IntegerOptions, SeamlessMap, to_integer_map};
 use seamstress_bench::maps::seamless;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
+use seamstress_bench::process::exit_code;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, surface_distance,
 };
@@ -87,14 +88,7 @@ const TITLES: [&str; 13] = [
 ];
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether every mesh gave quads that pass every check.

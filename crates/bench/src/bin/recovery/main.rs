@@ -15,6 +15,7 @@ use recover::{Outcome, Subject};
 use seamstress::consistency::AngleNorm;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes;
+use seamstress_bench::process::exit_code;
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
@@ -73,14 +74,7 @@ impl From<Norm> for AngleNorm {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether every map was recovered.

@@ -15,6 +15,7 @@ use outcome::{Outcome, Runner};
 use report::Report;
 use seamstress_bench::markdown::{Table, escape};
 use seamstress_bench::meshes::{self, name};
+use seamstress_bench::process::exit_code;
 use std::error::Error;
 use std::ffi::OsString;
 use std::fs;
@@ -66,14 +67,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 /// Whether all went well.
