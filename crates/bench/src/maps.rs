@@ -1,8 +1,9 @@
 //! Seamless maps of meshes, made once and kept.
 
 use crate::meshes::Mesh;
-use seamstress::{MapOptions, SeamlessMap, Tolerance, make_map};
+use seamstress::{GridSize, MapOptions, SeamlessMap, Tolerance, make_map};
 use seamstress_io::{MapObj, read_mesh, write_map_obj};
+use seamstress_surface::Metric;
 use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -10,17 +11,18 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-/// The seamless map of a mesh, and the seconds it took: read from the folder if it is there, else made with
-/// the options as they are, and kept in the folder.
+/// The seamless map of a mesh for a number of quads, and the seconds it took: read from the folder if it is
+/// there, else made, and kept in the folder.
 ///
 /// # Errors
 /// If there is no map, or a file cannot be read or written.
 pub fn seamless(
     name: &str,
     mesh: &Mesh,
+    quads: f64,
     folder: Option<&Path>,
 ) -> Result<(SeamlessMap, f64), Box<dyn Error>> {
-    let kept = folder.map(|folder| folder.join(format!("{name}.map.obj")));
+    let kept = folder.map(|folder| folder.join(format!("{name}.{quads}.map.obj")));
     if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
         let read = read_mesh(path)?;
         let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
@@ -30,8 +32,9 @@ pub fn seamless(
     }
     let start = Instant::now();
     let mut go_on = |_| ControlFlow::Continue(());
-    // As for quad meshes: no cone of a single quarter turn.
-    let options = MapOptions { largest_index: 2, ..MapOptions::default() };
+    let area = Metric::from_positions(&mesh.connectivity, &mesh.positions).surface_area();
+    let cell = Some(GridSize::Quads(quads).cell(area));
+    let options = MapOptions { cell, ..MapOptions::default() };
     let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = kept {

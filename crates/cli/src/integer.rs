@@ -18,13 +18,10 @@ use seamstress::{
     Violations, make_aligned_map, to_aligned_integer_map,
 };
 use seamstress_io::{MapObj, write_map_obj};
-use seamstress_surface::TriMesh;
+use seamstress_surface::{Metric, TriMesh};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
-
-/// Every vertex of a quad mesh has two quads at least.
-const LARGEST_INDEX: i32 = 2;
 
 /// The work done, and nothing written yet.
 struct Product {
@@ -67,7 +64,10 @@ fn make(args: &IntegerArgs, mut worker: Worker) -> Result<Product, Failure> {
     let connectivity = mesh.connect()?;
     let start = match &args.map {
         Some(path) => read_map(args, path, &mesh, &connectivity)?,
-        None => make_seamless(&args.method, &args.features, &mesh, &connectivity, &mut worker)?,
+        None => {
+            let size = args.size.grid();
+            make_seamless(&args.method, size, &args.features, &mesh, &connectivity, &mut worker)?
+        }
     };
     let solution =
         make_integer(&start, &args.options(), advice(args), &mesh, &connectivity, &mut worker)?;
@@ -164,16 +164,18 @@ fn read_map(
     Ok(SeamlessStart { map, features: Some(features) })
 }
 
-/// The seamless map to start from, by the direct method.
+/// The seamless map to start from, by the direct method, its cones those of a grid of a size.
 pub(crate) fn make_seamless(
     cones: &ConeArgs,
+    size: GridSize,
     features: &FeatureArgs,
     mesh: &LoadedMesh,
     connectivity: &TriMesh,
     worker: &mut Worker,
 ) -> Result<SeamlessStart, Failure> {
     let positions = &mesh.soup.positions;
-    let options = MapOptions { largest_index: LARGEST_INDEX, ..cones.options() };
+    let area = Metric::from_positions(connectivity, positions).surface_area();
+    let options = MapOptions { cell: Some(size.cell(area)), ..cones.options() };
     let FeatureArgs { features: sources, align_boundary } = features;
     let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
     let mut observe = |progress| worker.observe(progress);

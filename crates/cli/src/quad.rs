@@ -61,9 +61,10 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     }
     let source = mesh.connect()?;
     let positions = &mesh.soup.positions;
-    let start = make_seamless(&args.method, &args.features, &mesh, &source, &mut worker)?;
+    let size = args.size.grid();
+    let start = make_seamless(&args.method, size, &args.features, &mesh, &source, &mut worker)?;
 
-    let made = manifold_quads(&source, positions, args.size.grid(), |size| {
+    let made = manifold_quads(&source, positions, size, |size| {
         let options = IntegerOptions { size, ..IntegerOptions::default() };
         let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
         make_integer(&start, &options, advice, &mesh, &source, &mut worker)

@@ -52,9 +52,8 @@ pub fn manifold_quads<E>(
     size: GridSize,
     mut make: impl FnMut(GridSize) -> Result<IntegerSolution, E>,
 ) -> Result<ManifoldQuads, ManifoldError<E>> {
-    let mut refinements = 0;
+    let (mut size, mut refinements) = (size, 0);
     loop {
-        let size = finer(size, FINER.powi(refinements as i32));
         let integer = make(size).map_err(ManifoldError::Integer)?;
         let options = ExtractOptions::default();
         let extraction = extract(mesh, positions, integer.map.corner_uvs(), &options)?;
@@ -63,7 +62,14 @@ pub fn manifold_quads<E>(
                 return Ok(ManifoldQuads { integer, extraction, connectivity, refinements });
             }
             Err(faults) if refinements == MOST_REFINEMENTS => return Err(faults.into()),
-            Err(_) => refinements += 1,
+            Err(_) => {
+                refinements += 1;
+                // Cones may have asked for more quads already.
+                size = match finer(size, FINER) {
+                    GridSize::Quads(n) => GridSize::Quads(n.max(FINER * integer.quads())),
+                    size => size,
+                };
+            }
         }
     }
 }

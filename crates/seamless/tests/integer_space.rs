@@ -32,7 +32,7 @@ fn case(soup: &TriangleSoup) -> Case {
     let sharp = sharp_edges(&mesh, &soup.positions, 40f64.to_radians());
     let edges = sharp.union(&mesh, &EdgeSet::boundary(&mesh));
     let mut go_on = |_| ControlFlow::Continue(());
-    let options = MapOptions { cone_price: 0.0, ..Default::default() };
+    let options = MapOptions { cone_price: Some(0.0), ..Default::default() };
     let made = make_aligned_map(&mesh, &soup.positions, &edges, &options, &mut go_on).unwrap();
     let released = made.released.iter().map(|f| f.vertices.map(Vertex));
     let edges = edges.without(&mesh, released.map(|[a, b]| mesh.edge_between(a, b).unwrap()));

@@ -28,8 +28,8 @@ fn every_setting_gives_a_map() {
     for strategy in [RoundingStrategy::ConeBias, RoundingStrategy::LocalEstimation] {
         with(&|options| options.rounding.strategy = strategy);
     }
-    let as_rounded = with(&|options| options.cone_price = 0.0);
-    let cleaned = with(&|options| options.cone_price = 1.0);
+    let as_rounded = with(&|options| options.cone_price = Some(0.0));
+    let cleaned = with(&|options| options.cone_price = Some(1.0));
     assert!(cleaned.map.cones().len() <= as_rounded.map.cones().len());
 }
 
@@ -39,7 +39,7 @@ fn paying_for_cones_never_makes_more_and_can_make_fewer() {
     for seed in [2, 4, 5, 9] {
         let surface = kit::random_surface(seed);
         let cones = |cone_price| {
-            let options = MapOptions { cone_price, ..MapOptions::default() };
+            let options = MapOptions { cone_price: Some(cone_price), ..MapOptions::default() };
             mapped_with(&surface, &options).map.cones().len()
         };
         let as_rounded = cones(0.0);

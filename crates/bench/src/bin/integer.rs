@@ -8,9 +8,7 @@
 
 use clap::Parser;
 use seamstress::integer::IntegerStats;
-use seamstress::{
-    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, SeamlessMap, to_integer_map,
-};
+use seamstress::{GridSize, IntegerOptions, IntegerRounding, IntegerSolution, to_integer_map};
 use seamstress_bench::maps::{seamless, write_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
@@ -96,20 +94,12 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
                 continue;
             }
         };
-        let (map, seconds) = match seamless(&name, &mesh, args.maps.as_deref()) {
-            Ok(made) => made,
-            Err(error) => {
-                failures.push(format!("* {name}: no seamless map: {error}"));
-                continue;
-            }
-        };
         for &asked in &args.quads {
             tally.runs += 1;
-            let row = measure(&mesh, &map, asked, args);
-            match row {
+            match measure(&name, &mesh, asked, args) {
                 Ok(row) => {
                     tally.add(&row);
-                    let cells = row.cells(&name, &mesh, &map, seconds);
+                    let cells = row.cells(&name, &mesh);
                     eprintln!("| {} |", cells.join(" | "));
                     table.push(cells);
                 }
@@ -134,20 +124,24 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
 /// What came out of one run.
 struct Row {
     asked: f64,
+    cones: usize,
+    /// Seconds for the seamless map.
+    seconds: f64,
     solution: IntegerSolution,
     verdict: Option<Verdict>,
 }
 
-fn measure(mesh: &Mesh, map: &SeamlessMap, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+    let (map, seconds) = seamless(name, mesh, asked, args.maps.as_deref())?;
     let rounding = if args.greedy { IntegerRounding::Greedy } else { IntegerRounding::Constrained };
     let options = IntegerOptions { size: GridSize::Quads(asked), rounding, ..Default::default() };
     let mut go_on = |_| ControlFlow::Continue(());
-    let solution = to_integer_map(&mesh.connectivity, &mesh.positions, map, &options, &mut go_on)?;
+    let solution = to_integer_map(&mesh.connectivity, &mesh.positions, &map, &options, &mut go_on)?;
     let verdict = match &args.verify {
         Some(script) => Some(verify(script, mesh, &solution)?),
         None => None,
     };
-    Ok(Row { asked, solution, verdict })
+    Ok(Row { asked, cones: map.cones().len(), seconds, solution, verdict })
 }
 
 impl Row {
@@ -155,7 +149,7 @@ impl Row {
         self.solution.quads() / self.asked - 1.0
     }
 
-    fn cells(&self, name: &str, mesh: &Mesh, map: &SeamlessMap, seconds: f64) -> Vec<String> {
+    fn cells(&self, name: &str, mesh: &Mesh) -> Vec<String> {
         let solution = &self.solution;
         let sum =
             |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
@@ -169,7 +163,7 @@ impl Row {
         vec![
             name.to_owned(),
             mesh.connectivity.n_faces().to_string(),
-            map.cones().len().to_string(),
+            self.cones.to_string(),
             format!("{:.0}", self.asked),
             format!("{:.1}", solution.quads()),
             format!("{:+.1}", 100.0 * self.off()),
@@ -178,7 +172,7 @@ impl Row {
             format!("{:.0}", sum(|c| c.integers as f64)),
             solution.refinements().to_string(),
             parts.map(|x| format!("{x:.2}")).join("/"),
-            format!("{seconds:.1}"),
+            format!("{:.1}", self.seconds),
             self.verdict.as_ref().map_or("-".into(), Verdict::cell),
         ]
     }

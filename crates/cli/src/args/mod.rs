@@ -129,14 +129,10 @@ pub(crate) struct ConeArgs {
     pub(crate) cone_bias: f64,
 
     /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
-    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded
-    #[arg(
-        long,
-        value_name = "X",
-        value_parser = not_negative,
-        default_value_t = MapOptions::default().cone_price
-    )]
-    pub(crate) cone_price: f64,
+    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded [default: 0.0006;
+    /// for quads the share of the surface that four of them have, but at least 0.0015]
+    #[arg(long, value_name = "X", value_parser = not_negative)]
+    pub(crate) cone_price: Option<f64>,
 }
 
 impl ConeArgs {

@@ -5,6 +5,7 @@ use super::certificate::IntegerMap;
 use super::connections::connections;
 use super::gauss::{Gauss, Overflow};
 use super::isolines::turning_points;
+use super::moves::Moves;
 use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
 use super::rounding::{Constraint, RoundingProblem, Span, round_constrained, round_greedily};
@@ -140,6 +141,7 @@ pub(super) struct IntegerProblem<'a> {
     /// Its integral coordinates, not integral as yet.
     coordinates: Vec<f64>,
     matrix: Dense,
+    moves: Moves,
     /// Connections and ways to isolines up to a radius.
     near: (f64, Vec<Connection>),
     /// Grid points around vertices.
@@ -202,6 +204,7 @@ impl<'a> IntegerProblem<'a> {
             problem,
             y,
             coordinates,
+            moves: Moves::reduced(&matrix),
             matrix,
             near,
             shapes,
@@ -235,16 +238,11 @@ impl<'a> IntegerProblem<'a> {
             seconds_reduction: self.seconds,
             ..Default::default()
         };
-        let nearby = NEARBY.into_iter().enumerate().map(|(k, share)| (k, 0, share));
-        let finer = REFINEMENTS.iter().filter(|_| may_be_finer);
-        let finer = finer.map(|&k| (0, k, REFINEMENT.powi(-(k as i32))));
-        let grids = nearby.chain(finer);
-        let is_single = self.options.rounding == IntegerRounding::Greedy;
         let mut first = None;
-        for (nudges, refinements, share) in grids.take(if is_single { 1 } else { usize::MAX }) {
+        for Grid { nudges, refinements, share, cares } in self.grids(may_be_finer) {
             (stats.nudges, stats.refinements) = (nudges, refinements);
             let h = share.sqrt() * cell / self.unit;
-            for &care in if is_single { &Care::ALL[..1] } else { &Care::ALL[..] } {
+            for &care in cares {
                 match self.attempt(h, care, column, &mut stats, watch) {
                     Ok((corner_uvs, columns)) => {
                         stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
@@ -263,6 +261,27 @@ impl<'a> IntegerProblem<'a> {
             }
         }
         Err(first.unwrap_or(IntegerFailure::Unreadable))
+    }
+
+    /// The grids to try, one after the other: first nearby ones, then finer ones.
+    fn grids(&self, may_be_finer: bool) -> Vec<Grid> {
+        if self.options.rounding == IntegerRounding::Greedy {
+            return vec![Grid { nudges: 0, refinements: 0, share: 1.0, cares: &[Care::Faces] }];
+        }
+        let careful: &[Care] = &[Care::Faces, Care::Vertices];
+        let mut grids = Vec::new();
+        for cares in [careful, &[Care::Cones]] {
+            for (nudges, share) in NEARBY.into_iter().enumerate() {
+                grids.push(Grid { nudges, refinements: 0, share, cares });
+            }
+        }
+        for &refinements in REFINEMENTS.iter().filter(|_| may_be_finer) {
+            let share = REFINEMENT.powi(-(refinements as i32));
+            for cares in [careful, &[Care::Cones]] {
+                grids.push(Grid { nudges: 0, refinements, share, cares });
+            }
+        }
+        grids
     }
 
     /// One grid: rounds, moves to the integers, polishes, writes in exact numbers and certifies.
@@ -345,8 +364,11 @@ impl<'a> IntegerProblem<'a> {
         }
         let mean: Vec<f64> = self.coordinates.iter().map(|x| x / h).collect();
         let short = self.near.1.iter().filter(|c| c.length < radius);
-        let mut constraints: Vec<Constraint> =
-            short.map(|c| Constraint::new(c, &self.coordinates, h)).collect();
+        let constraint = |c: &Connection| {
+            let least = if care == Care::Cones { 1 } else { c.least };
+            Constraint { least, ..Constraint::new(c, &self.coordinates, h) }
+        };
+        let mut constraints: Vec<Constraint> = short.map(constraint).collect();
         let mut spans = Vec::new();
         let matters =
             |shape: &&Shape| shape.extent < radius && (shape.is_face || care == Care::Vertices);
@@ -356,7 +378,8 @@ impl<'a> IntegerProblem<'a> {
             let ways = (first..constraints.len()).collect();
             spans.push(Span { ways, sides: shape.sides.clone() });
         }
-        Ok(RoundingProblem { matrix: self.matrix.clone(), mean, constraints, shapes: spans })
+        let (matrix, moves) = (self.matrix.clone(), self.moves.clone());
+        Ok(RoundingProblem { matrix, moves, mean, constraints, shapes: spans })
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
@@ -396,18 +419,25 @@ impl<'a> IntegerProblem<'a> {
     }
 }
 
-/// Which shapes of grid points the rounding keeps.
+/// What the rounding keeps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Care {
-    /// Faces of the mesh.
+    /// Lines between grid points and the faces that they span. The quads may be no manifold.
+    Cones,
+    /// Also no two edges of quads between the same two points.
     Faces,
-    /// Those around vertices as well: more than is needed, but the way is blocked less often.
+    /// Shapes around vertices as well: more than is needed, but the way is blocked less often.
     Vertices,
 }
 
-impl Care {
-    /// In the order in which they are tried.
-    const ALL: [Self; 2] = [Self::Faces, Self::Vertices];
+/// A grid to try.
+struct Grid {
+    nudges: usize,
+    refinements: usize,
+    /// Area of its cells against that of those asked for.
+    share: f64,
+    /// How to round to it, one after the other.
+    cares: &'static [Care],
 }
 
 /// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.

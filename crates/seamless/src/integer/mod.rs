@@ -19,6 +19,7 @@ pub mod connections;
 pub mod gauss;
 pub mod isolines;
 pub mod lattice;
+pub mod moves;
 pub mod rays;
 pub mod reduced;
 pub mod rounding;
@@ -53,6 +54,15 @@ impl GridSize {
     pub fn value(self) -> f64 {
         match self {
             Self::Quads(x) | Self::EdgeLength(x) | Self::Scale(x) => x,
+        }
+    }
+
+    /// Edge length of a cell on a surface of an area, both in mesh units.
+    pub fn cell(self, area: f64) -> f64 {
+        match self {
+            Self::Quads(quads) => (area / quads).sqrt(),
+            Self::EdgeLength(length) => length,
+            Self::Scale(scale) => 1.0 / scale,
         }
     }
 }

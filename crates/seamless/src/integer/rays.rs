@@ -76,7 +76,7 @@ impl Search<'_> {
                     return Ok(None);
                 }
                 let rows = self.rise(&own, &crossed, edge, coordinate, quarters)?;
-                return Ok(Some(Connection { length: distance, rows }));
+                return Ok(Some(Connection { length: distance, rows, least: 1 }));
             }
             let Some(t) = scene.mesh.twin(edge) else { return Ok(None) };
             crossed.push(edge);
@@ -171,6 +171,6 @@ impl Search<'_> {
         let way = scene.at(apex) - scene.at(foot);
         let length = if coordinate == 0 { way.re } else { way.im }.abs();
         let rows = [scene.space.row(&rise)?, Vec::new()];
-        Ok((length < self.radius).then_some(Connection { length, rows }))
+        Ok((length < self.radius).then_some(Connection { length, rows, least: 1 }))
     }
 }

@@ -1,6 +1,7 @@
 //! Choosing the integers: a closest vector problem in which no connection of cones may collapse.
 
 use super::conditional::{Conditional, Effect, Row, apply, energy};
+use super::moves::Moves;
 use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
@@ -16,6 +17,8 @@ pub struct Constraint {
     pub start: [f64; 2],
     /// Length of the connection there, grid units.
     pub length: f64,
+    /// Grid units that a walk along the grid from one end to the other has at least.
+    pub least: i64,
 }
 
 impl Constraint {
@@ -24,12 +27,13 @@ impl Constraint {
     pub fn new(connection: &Connection, from: &[f64], h: f64) -> Self {
         let rows = connection.rows.clone();
         let start = [apply(&rows[0], from) / h, apply(&rows[1], from) / h];
-        Self { rows, start, length: connection.length / h }
+        Self { rows, start, length: connection.length / h, least: connection.least }
     }
 
-    /// Whether a displacement with this value is allowed: `D != 0` and `D . D0 > 0`.
+    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`.
     pub fn allows(&self, d: [f64; 2]) -> bool {
-        d[0] * d[0] + d[1] * d[1] > 0.5 && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
+        d[0].abs() + d[1].abs() > self.least as f64 - 0.5
+            && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
     }
 
     /// The displacement at integers.
@@ -48,6 +52,8 @@ impl Constraint {
 pub struct RoundingProblem {
     /// The matrix P.
     pub matrix: Dense,
+    /// Steps along which the search moves.
+    pub moves: Moves,
     /// The coordinates of the seamless map in grid units.
     pub mean: Vec<f64>,
     /// Connections that must survive.
@@ -103,7 +109,7 @@ pub struct Rounded {
     pub restarts: usize,
 }
 
-/// Connections shorter than this are rounded first, grid units.
+/// Connections with less to spare than this are rounded first, grid units.
 const SHORT: f64 = 2.0;
 /// Restarts with other priorities.
 const MOST_RESTARTS: usize = 5;
@@ -187,7 +193,8 @@ fn fix_connections(
             .iter()
             .filter_map(|&i| {
                 let length = fixing.length(i);
-                (length < SHORT).then_some((length - priority[i], i))
+                let slack = length - (constraints[i].least - 1) as f64;
+                (slack < SHORT).then_some((slack - priority[i], i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let Some((_, i)) = candidate else { break };
@@ -202,6 +209,7 @@ fn fix_connections(
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 struct Fixing<'a> {
     constraints: &'a [Constraint],
+    rows: FlatRows,
     shapes: &'a [Span],
     /// The shapes that each constraint takes part in.
     shapes_of: Vec<Vec<usize>>,
@@ -210,6 +218,36 @@ struct Fixing<'a> {
     variances: Vec<f64>,
     /// Variance below which a value is determined.
     determined: f64,
+}
+
+/// The rows of all constraints in one piece, since each fixing reads them all.
+struct FlatRows {
+    entries: Vec<(u32, f64)>,
+    /// Where the first row of each constraint begins, and its second.
+    starts: Vec<[usize; 2]>,
+}
+
+impl FlatRows {
+    fn new(constraints: &[Constraint]) -> Self {
+        let mut rows = Self { entries: Vec::new(), starts: Vec::new() };
+        for constraint in constraints {
+            let starts = constraint.rows.each_ref().map(|row| {
+                let start = rows.entries.len();
+                rows.entries.extend(row.iter().map(|&(k, c)| (k as u32, c as f64)));
+                start
+            });
+            rows.starts.push(starts);
+        }
+        rows.starts.push([rows.entries.len(); 2]);
+        rows
+    }
+
+    /// Both rows of a constraint times a vector.
+    fn apply(&self, i: usize, x: &[f64]) -> [f64; 2] {
+        let ([first, second], [end, _]) = (self.starts[i], self.starts[i + 1]);
+        [first..second, second..end]
+            .map(|range| self.entries[range].iter().map(|&(k, c)| c * x[k as usize]).sum())
+    }
 }
 
 /// One of the two rows of a connection that is about to be fixed.
@@ -244,6 +282,7 @@ impl<'a> Fixing<'a> {
             |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
         Self {
             constraints,
+            rows: FlatRows::new(constraints),
             shapes: &problem.shapes,
             shapes_of: problem.shapes_of(),
             means: constraints.iter().map(mean).collect(),
@@ -328,11 +367,11 @@ impl<'a> Fixing<'a> {
 
     fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
         // What is determined has no covariance with anything.
-        let coupling = |(c, &variance): (&Constraint, &f64)| {
-            let is_open = variance > self.determined;
-            c.rows.each_ref().map(|row| if is_open { apply(row, spread) } else { 0.0 })
+        let coupling = |(i, &variance): (usize, &f64)| match variance > self.determined {
+            true => self.rows.apply(i, spread),
+            false => [0.0; 2],
         };
-        let coupling = self.constraints.iter().zip(&self.variances).map(coupling).collect();
+        let coupling = self.variances.iter().enumerate().map(coupling).collect();
         Part { effect, coupling, variance: apply(row, spread) }
     }
 
@@ -386,11 +425,14 @@ mod tests {
         let connection = |re: &[(usize, i64)], im: &[(usize, i64)]| Connection {
             length: 0.5,
             rows: [re.to_vec(), im.to_vec()],
+            least: 1,
         };
         let sum = connection(&[(0, 1), (3, 1)], &[(1, 1), (2, -1)]);
         let connections = [connection(&[(0, 1)], &[(1, 1)]), sum];
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
-        RoundingProblem { matrix: Dense { order: 4, values }, mean, constraints, shapes: vec![] }
+        let matrix = Dense { order: 4, values };
+        let moves = Moves::reduced(&matrix);
+        RoundingProblem { matrix, moves, mean, constraints, shapes: vec![] }
     }
 
     /// The best integer point within four of the mean that satisfies the constraints.
@@ -433,6 +475,7 @@ mod tests {
             let side = |k: usize| Connection {
                 length: 0.6,
                 rows: [vec![(2 * k, 1)], vec![(2 * k + 1, 1)]],
+                least: 1,
             };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
@@ -442,6 +485,17 @@ mod tests {
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
             let cross = a[0] * b[1] - a[1] * b[0];
             assert!(rounded.violated == 0 && cross > 0.0, "seed {seed}: {a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn a_loop_is_as_long_as_it_has_to_be() {
+        for (seed, least) in (0..20).flat_map(|seed| [(seed, 1), (seed, 2), (seed, 3)]) {
+            let mut problem = problem(seed);
+            problem.constraints[1].least = least;
+            let rounded = round_constrained(&problem).unwrap();
+            let [u, v] = problem.constraints[1].at(&rounded.x);
+            assert!(rounded.violated == 0 && u.abs() + v.abs() >= least as f64, "seed {seed}");
         }
     }
 

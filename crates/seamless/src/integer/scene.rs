@@ -33,6 +33,8 @@ pub struct Connection {
     /// Real and imaginary part of the way from its first to its second end, as exact forms in the
     /// coordinates. The second is empty for ways to an isoline.
     pub rows: [Row; 2],
+    /// Grid units that a walk along the grid from one end to the other must have at least.
+    pub least: i64,
 }
 
 impl Scene<'_> {
@@ -71,7 +73,7 @@ impl Scene<'_> {
         let [to, from] = [sight.to, sight.from].map(|h| self.space.form(self.cut.wedge[h]));
         add_scaled(&mut form, to, Gauss::unit(turns))?;
         add_scaled(&mut form, from, Gauss::ONE.negated())?;
-        Ok(Connection { length: sight.length, rows: self.space.rows(&form)? })
+        Ok(Connection { length: sight.length, rows: self.space.rows(&form)?, least: 1 })
     }
 }
 
@@ -88,14 +90,21 @@ pub struct Sight {
     pub crossed: Vec<Halfedge>,
 }
 
-/// One for lines that differ by a unit only, shortest first; those that vanish identically are left out.
+/// One for lines that differ by a unit only, with what the strictest of them asks for, shortest first; those
+/// that vanish identically are left out.
 pub fn distinct(mut connections: Vec<Connection>) -> Vec<Connection> {
     connections.retain(|c| c.rows.iter().any(|row| !row.is_empty()));
     for connection in &mut connections {
         connection.rows = canonical(std::mem::take(&mut connection.rows));
     }
     connections.sort_by(|a, b| a.rows.cmp(&b.rows).then(a.length.total_cmp(&b.length)));
-    connections.dedup_by(|b, a| a.rows == b.rows);
+    connections.dedup_by(|b, a| {
+        let is_same = a.rows == b.rows;
+        if is_same {
+            a.least = a.least.max(b.least);
+        }
+        is_same
+    });
     connections.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.rows.cmp(&b.rows)));
     connections
 }

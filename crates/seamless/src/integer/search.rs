@@ -1,5 +1,6 @@
 //! Local search around an integer point.
 
+use super::conditional::{Row, apply};
 use super::reduced::Dense;
 use super::rounding::RoundingProblem;
 
@@ -7,35 +8,42 @@ use super::rounding::RoundingProblem;
 const MOST_MOVES: usize = 300;
 /// Moves tried in the order of their energies while constraints are violated.
 const TRIED: usize = 300;
+/// Steps of a repair. Those that succeed take less than a third of it.
+const MOST_REPAIRS: usize = 1000;
+/// What energy counts in a repair against a violated constraint of weight one; a step along a usual
+/// coordinate costs about one.
+const ENERGY_WEIGHT: f64 = 0.05;
 
-/// A coordinate and the step it takes, 1 or -1.
+/// A vector of the basis and how often it is added, 1 or -1.
 type Move = (usize, i64);
 
-/// Moves single coordinates and pairs of them by one while that lowers the number of violated constraints,
-/// or the energy at the same number.
-///
-/// Pairs matter: the relations at cones couple the coordinates.
+/// Takes steps along single vectors of the reduced basis and pairs of them while that lowers the number of
+/// violated constraints, or the energy at the same number; where constraints stay violated, repairs them at
+/// the cost of energy first.
 pub fn improve(problem: &RoundingProblem, x: Vec<i64>) -> Vec<i64> {
     let mut search = Search::new(problem, x);
-    for _ in 0..MOST_MOVES {
-        let Some(moves) = search.best_single().or_else(|| search.best_pair()) else { break };
-        search.apply(&moves);
+    search.descend();
+    if search.violated > 0 && search.repair() {
+        search.descend();
     }
     search.x
 }
 
 struct Search<'a> {
     problem: &'a RoundingProblem,
+    /// The energy on multiples of the basis.
     matrix: &'a Dense,
     x: Vec<i64>,
-    /// Gradient of the energy.
+    /// Gradient of the energy along the vectors of the basis.
     gradient: Vec<f64>,
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
     violated: usize,
+    /// What violating each constraint counts in a repair, and each shape.
+    weights: [Vec<f64>; 2],
     /// For each constraint the shapes that it takes part in.
     shapes_of: Vec<Vec<usize>>,
-    /// For each coordinate the constraints it moves, and how.
+    /// For each vector of the basis the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
     /// A fall of the energy that counts.
     gain: f64,
@@ -43,32 +51,30 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(problem: &'a RoundingProblem, x: Vec<i64>) -> Self {
-        let n = x.len();
         let d: Vec<f64> = x.iter().zip(&problem.mean).map(|(&x, m)| x as f64 - m).collect();
-        let gradient: Vec<f64> = problem.matrix.multiply(&d).iter().map(|g| 2.0 * g).collect();
-        let energy: f64 = 0.5 * gradient.iter().zip(&d).map(|(g, d)| g * d).sum::<f64>();
-        let mut moved: Vec<Vec<(usize, [i64; 2])>> = vec![Vec::new(); n];
-        let mut values = vec![[0; 2]; problem.constraints.len()];
-        for (i, constraint) in problem.constraints.iter().enumerate() {
-            for (part, row) in constraint.rows.iter().enumerate() {
-                for &(k, c) in row {
-                    values[i][part] += c * x[k];
-                    match moved[k].last_mut() {
-                        Some((last, step)) if *last == i => step[part] += c,
-                        _ => {
-                            let mut step = [0; 2];
-                            step[part] = c;
-                            moved[k].push((i, step));
-                        }
-                    }
-                }
-            }
-        }
+        let slope: Vec<f64> = problem.matrix.multiply(&d).iter().map(|g| 2.0 * g).collect();
+        let energy: f64 = 0.5 * slope.iter().zip(&d).map(|(g, d)| g * d).sum::<f64>();
+        let basis = &problem.moves;
+        let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
+        let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
+        let moved = moved(problem);
         let shapes_of = problem.shapes_of();
         let gain = 1e-6 * energy.abs() + 1e-12;
-        let matrix = &problem.matrix;
-        let mut search =
-            Self { problem, matrix, x, gradient, values, violated: 0, shapes_of, moved, gain };
+        let matrix = &basis.matrix;
+        let weights = [problem.constraints.len(), problem.shapes.len()].map(|n| vec![1.0; n]);
+        let violated = 0;
+        let mut search = Self {
+            problem,
+            matrix,
+            x,
+            gradient,
+            values,
+            violated,
+            weights,
+            shapes_of,
+            moved,
+            gain,
+        };
         let every = 0..problem.constraints.len();
         search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
             + (0..problem.shapes.len()).filter(|&k| !search.has_room(k, &[])).count();
@@ -106,18 +112,101 @@ impl<'a> Search<'a> {
         steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
     }
 
-    /// Violated constraints and shapes after some moves.
-    fn violated_after(&self, moves: &[Move]) -> usize {
+    /// Violated constraints and shapes after some moves, and the change of their weight.
+    fn after(&self, moves: &[Move]) -> (usize, f64) {
         let changed = self.changed(moves);
         let mut shapes: Vec<usize> =
             changed.iter().flat_map(|(i, _)| &self.shapes_of[*i]).copied().collect();
         shapes.sort_unstable();
         shapes.dedup();
-        let before = changed.iter().filter(|(i, _)| !self.allows(*i, self.values[*i])).count()
-            + shapes.iter().filter(|k| !self.has_room(**k, &[])).count();
-        let after = changed.iter().filter(|(i, value)| !self.allows(*i, *value)).count()
-            + shapes.iter().filter(|k| !self.has_room(**k, &changed)).count();
-        self.violated - before + after
+        let (mut count, mut weight) = (self.violated, 0.0);
+        let mut note = |was_good: bool, is_good: bool, by: f64| match (was_good, is_good) {
+            (true, false) => (count, weight) = (count + 1, weight + by),
+            (false, true) => (count, weight) = (count - 1, weight - by),
+            _ => {}
+        };
+        for &(i, value) in &changed {
+            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[0][i]);
+        }
+        for k in shapes {
+            note(self.has_room(k, &[]), self.has_room(k, &changed), self.weights[1][k]);
+        }
+        (count, weight)
+    }
+
+    /// Violated constraints and shapes after some moves.
+    fn violated_after(&self, moves: &[Move]) -> usize {
+        self.after(moves).0
+    }
+
+    /// Steps as long as they pay.
+    fn descend(&mut self) {
+        for _ in 0..MOST_MOVES {
+            let Some(moves) = self.best_single().or_else(|| self.best_pair()) else { break };
+            self.apply(&moves);
+        }
+    }
+
+    /// Looks at one violated constraint after the other and takes the step among those that move it that
+    /// lowers the weight of all violated ones most; if none does, it gets more weight. True if all
+    /// constraints hold in the end; otherwise the fewest violated ones found are left.
+    ///
+    /// # Source
+    /// Morris 1993, *The breakout method for escaping from local minima*.
+    fn repair(&mut self) -> bool {
+        let (n, all) = (self.problem.constraints.len(), self.problem.shapes.len());
+        let touching = self.touching();
+        let mut best = (self.violated, self.x.clone());
+        let mut at = 0;
+        for _ in 0..MOST_REPAIRS {
+            if self.violated == 0 {
+                return true;
+            }
+            let is_bad = |&i: &usize| match i.checked_sub(n) {
+                None => !self.allows(i, self.values[i]),
+                Some(k) => !self.has_room(k, &[]),
+            };
+            let next = (0..n + all).map(|k| (at + k) % (n + all)).find(is_bad);
+            let Some(target) = next else { break };
+            at = target + 1;
+            let vectors: Vec<usize> = match target.checked_sub(n) {
+                None => touching[target].clone(),
+                Some(k) => {
+                    let ways = self.problem.shapes[k].ways.iter();
+                    let mut all: Vec<usize> = ways.flat_map(|&i| touching[i].clone()).collect();
+                    all.sort_unstable();
+                    all.dedup();
+                    all
+                }
+            };
+            let worth = vectors
+                .iter()
+                .flat_map(|&k| [(k, 1), (k, -1)])
+                .map(|step| (self.after(&[step]).1 + ENERGY_WEIGHT * self.cost(step), step));
+            match worth.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
+                Some((change, step)) if change < -1e-9 => {
+                    self.apply(&[step]);
+                    if self.violated < best.0 {
+                        best = (self.violated, self.x.clone());
+                    }
+                }
+                _ => match target.checked_sub(n) {
+                    None => self.weights[0][target] += 1.0,
+                    Some(k) => self.weights[1][k] += 1.0,
+                },
+            }
+        }
+        self.x = best.1;
+        self.violated == 0
+    }
+
+    /// For each constraint the vectors of the basis that move it.
+    fn touching(&self) -> Vec<Vec<usize>> {
+        let mut touching = vec![Vec::new(); self.problem.constraints.len()];
+        for (k, moved) in self.moved.iter().enumerate() {
+            moved.iter().for_each(|&(i, _)| touching[i].push(k));
+        }
+        touching
     }
 
     /// Whether moves of this energy are worth it.
@@ -191,10 +280,38 @@ impl<'a> Search<'a> {
             self.values[i] = value;
         }
         for &(k, step) in moves {
-            self.x[k] += step;
+            self.problem.moves.vectors[k].iter().for_each(|&(i, c)| self.x[i] += step * c);
             let scale = 2.0 * step as f64;
             let row = self.matrix.row(k);
             self.gradient.iter_mut().zip(row).for_each(|(g, p)| *g += scale * p);
         }
     }
+}
+
+/// For each vector of the basis the constraints it moves, and how.
+fn moved(problem: &RoundingProblem) -> Vec<Vec<(usize, [i64; 2])>> {
+    // For each coordinate the constraints it occurs in.
+    let mut occurs: Vec<Vec<(usize, [i64; 2])>> = vec![Vec::new(); problem.mean.len()];
+    for (i, constraint) in problem.constraints.iter().enumerate() {
+        for (part, row) in constraint.rows.iter().enumerate() {
+            for &(k, c) in row {
+                let mut step = [0; 2];
+                step[part] = c;
+                occurs[k].push((i, step));
+            }
+        }
+    }
+    let along = |vector: &Row| {
+        let mut steps: Vec<(usize, [i64; 2])> = vector
+            .iter()
+            .flat_map(|&(k, c)| occurs[k].iter().map(move |&(i, [u, v])| (i, [c * u, c * v])))
+            .collect();
+        steps.sort_unstable();
+        let sum = |group: &[(usize, [i64; 2])]| {
+            group.iter().fold((group[0].0, [0; 2]), |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
+        };
+        let sums = steps.chunk_by(|a, b| a.0 == b.0).map(sum);
+        sums.filter(|(_, step)| *step != [0; 2]).collect()
+    };
+    problem.moves.vectors.iter().map(along).collect()
 }

@@ -130,7 +130,11 @@ fn gap(scene: &Scene<'_>, own: &Form, ends: [&Tip; 2]) -> Result<Option<Shape>, 
     let way = |tip: &Tip| {
         let mut form = tip.form.clone();
         add_scaled(&mut form, own, Gauss::ONE.negated())?;
-        Ok::<_, Overflow>(Connection { length: tip.way.norm(), rows: scene.space.rows(&form)? })
+        Ok::<_, Overflow>(Connection {
+            length: tip.way.norm(),
+            rows: scene.space.rows(&form)?,
+            least: 1,
+        })
     };
     let extent = (b.way - a.way).norm().min(a.way.norm()).min(b.way.norm());
     let sides = vec![[0, 1], [1, 2], [2, 0]];
@@ -157,7 +161,7 @@ fn star(scene: &Scene<'_>, tips: &[Tip], is_open: bool) -> Result<Option<Shape>,
         let mut form = tip.form.clone();
         add_scaled(&mut form, &tips[0].form, Gauss::ONE.negated())?;
         let length = (tip.way - tips[0].way).norm();
-        ways.push(Connection { length, rows: scene.space.rows(&form)? });
+        ways.push(Connection { length, rows: scene.space.rows(&form)?, least: 1 });
         let nearest = tips[..k].iter().map(|other| (other.way - tip.way).norm());
         extent = nearest.fold(extent, f64::min);
     }

@@ -207,23 +207,23 @@ impl<'p> Run<'p, '_, '_> {
     /// Meets the size asked for; the cell size, the components and the number of cell sizes tried.
     fn solve(&mut self, size: GridSize) -> Result<(f64, Vec<Placed>, usize), IntegerError> {
         let area: f64 = self.problems.iter().map(IntegerProblem::area).sum();
-        let quads = match size {
-            GridSize::EdgeLength(cell) => return Ok((cell, self.place_all(cell, true)?, 1)),
-            GridSize::Scale(scale) => {
-                return Ok((1.0 / scale, self.place_all(1.0 / scale, true)?, 1));
-            }
-            GridSize::Quads(quads) => quads,
+        let mut cell = size.cell(area);
+        let GridSize::Quads(quads) = size else {
+            return Ok((cell, self.place_all(cell, true)?, 1));
         };
-        let mut cell = (area / quads).sqrt();
         let mut best: Option<(f64, f64, Vec<Placed>)> = None;
         let mut tried = 0;
         // Whether the last size was the best so far, and still far off.
         let mut is_promising = false;
         while tried < MOST_SIZES || (tried < 2 * MOST_SIZES && is_promising) {
             tried += 1;
-            let placed = match self.place_all(cell, best.is_none()) {
-                Err(IntegerError::Component { .. }) if best.is_some() => break,
-                placed => placed?,
+            let placed = match (self.place_all(cell, best.is_none()), &best) {
+                // Where there is nothing, go only half as far.
+                (Err(IntegerError::Component { .. }), Some(best)) => {
+                    cell = (best.1 * cell).sqrt();
+                    continue;
+                }
+                (placed, _) => placed?,
             };
             let ratio = placed.iter().map(|p| p.stats.quads).sum::<f64>() / quads;
             let off = (ratio - 1.0).abs();

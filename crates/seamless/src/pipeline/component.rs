@@ -1,6 +1,6 @@
 //! A certified map of one connected mesh.
 
-use super::fewer_cones::fewer_cones;
+use super::fewer_cones::{Terms, fewer_cones};
 use super::finish::Finished;
 use super::mended::lay_out_or_mend;
 use super::parts::in_component;
@@ -54,7 +54,7 @@ pub(super) fn map_component(
     let (mut features, mut released) =
         drop_conflicts(mesh, &positions, &metric, in_component(features, piece));
     let sectors_of = |features: &EdgeSet| {
-        Sectors::new(mesh, &metric, features).with_largest_index(options.largest_index)
+        Sectors::new(mesh, &metric, features).with_largest_index(options.largest_index())
     };
     let mut sectors = sectors_of(&features);
     let mut begun = None;
@@ -90,7 +90,7 @@ fn map_unaligned(
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<[f64; 2]>, ComponentStats), LayoutError> {
-    let sectors = Sectors::unaligned(mesh).with_largest_index(options.largest_index);
+    let sectors = Sectors::unaligned(mesh).with_largest_index(options.largest_index());
     let mut first_failure = None;
     for exponent in EXPONENTS {
         match solve(&sectors, metric, exponent, start, &mut None, options, watch) {
@@ -163,10 +163,10 @@ fn solve(
     let mut finished = Finished::judged(sectors, laid, watch)?;
     clock.lap(Stage::Layout, finished.iterations);
 
-    if options.cone_price > 0.0 && start.leaves_cones_free() {
+    let terms = Terms::new(options, plain, sectors.any_aligned());
+    if let Some(terms) = terms.filter(|_| start.leaves_cones_free()) {
         watch.enter(Stage::CleanUp)?;
-        let (better, iterations) =
-            fewer_cones(sectors, &metric, finished, options.cone_price, watch)?;
+        let (better, iterations) = fewer_cones(sectors, &metric, finished, &terms, watch)?;
         finished = better;
         clock.lap(Stage::CleanUp, iterations);
     }

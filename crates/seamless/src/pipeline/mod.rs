@@ -37,12 +37,15 @@ pub struct MapOptions {
     /// The rounding loop.
     pub rounding: RoundingOptions,
     /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
-    /// cones as rounded. Whatever the price, clean-up is undone where it raises tau by more than 5 % or
-    /// the energy's excess over 4 by more than 20 %.
-    pub cone_price: f64,
-    /// Largest index of a cone that is not prescribed, quarters. One of 3 has a quarter turn, the best there is
-    /// for a sharp spike, and would become a vertex of a single quad: 2 for quad meshes.
-    pub largest_index: i32,
+    /// cones as they were rounded. None: 0.0006; with a `cell` the share of the surface that four cells
+    /// have, but at least 0.0015.
+    pub cone_price: Option<f64>,
+    /// Edge length, in the unit of the positions, of the quads that will be made from the map. None if the
+    /// map is an end in itself: then clean-up is undone where it raises tau by more than 5 % or the energy's
+    /// excess over 4 by more than 20 %, whatever the price. For quads it is the number of quarters of
+    /// cones that counts, spikes much smaller than the cells may go, and no cone has an index of 3, unless it is
+    /// prescribed: the best there is for a sharp spike, it would become a vertex of a single quad.
+    pub cell: Option<f64>,
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`]) rather than a
     /// line in the result.
     pub strict_features: bool,
@@ -59,12 +62,22 @@ impl Default for MapOptions {
     fn default() -> Self {
         Self {
             rounding: RoundingOptions::default(),
-            cone_price: 0.0006,
-            largest_index: LARGEST_INDEX,
+            cone_price: None,
+            cell: None,
             strict_features: false,
             polish: Some(PolishOptions::default()),
             objective: None,
             tolerance: Tolerance::default(),
+        }
+    }
+}
+
+impl MapOptions {
+    /// Largest index of a cone that is not prescribed, quarters.
+    fn largest_index(&self) -> i32 {
+        match self.cell {
+            Some(_) => LARGEST_INDEX - 1,
+            None => LARGEST_INDEX,
         }
     }
 }

@@ -18,10 +18,26 @@ pub struct CleanUpStats {
     pub cancelled: usize,
     /// Moves of a cone to a neighbouring vertex.
     pub moved: usize,
-    /// Interior cones before.
-    pub cones_before: usize,
-    /// Interior cones after.
-    pub cones_after: usize,
+    /// Interior cones fewer, as [`CleanUpOptions::count`] counts them.
+    pub saved: i32,
+}
+
+/// How cones are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConeCount {
+    /// Each once.
+    Cones,
+    /// Each by its quarters, `|k|`: a cone of two quarters is not preferred to two cones.
+    Quarters,
+}
+
+impl ConeCount {
+    fn of(self, excess: i32) -> i32 {
+        match self {
+            Self::Cones => i32::from(excess != 0),
+            Self::Quarters => excess.abs(),
+        }
+    }
 }
 
 /// Settings of clean-up.
@@ -29,8 +45,12 @@ pub struct CleanUpStats {
 pub struct CleanUpOptions {
     /// Mean symmetric Dirichlet energy that one cone fewer may cost.
     pub price: f64,
+    /// How cones are counted.
+    pub count: ConeCount,
     /// The log scale at a cone may reach this, or what it was, but not more.
     pub largest_scale: f64,
+    /// An index may differ from the curvature by less than this many quarters.
+    pub largest_deviation: f64,
 }
 
 /// Why clean-up stopped early.
@@ -53,8 +73,6 @@ const SEARCH_LIMIT: usize = 4000;
 const MOVES: usize = 3;
 /// A move has to gain this much.
 const LEAST_GAIN: f64 = 1e-6;
-/// An index may differ from the curvature by less than this many quarters.
-const LARGEST_DEVIATION: f64 = 1.5;
 
 /// Cancels pairs of cones and moves cones along edges while the surrogate energy grows by less than
 /// the price per cone removed; changes the matchings along the way. Returns also the quarter turns
@@ -68,7 +86,8 @@ pub fn clean_up(
 ) -> Result<(CleanUpStats, FaceData<i32>), CleanUpError> {
     let index = matched.sector_indices(sectors, metric);
     let mut work = CleanUp::new(sectors, metric, index, *options)?;
-    let mut stats = CleanUpStats { cones_before: work.n_cones(), ..Default::default() };
+    let before = work.count();
+    let mut stats = CleanUpStats::default();
     for sweep in 0..SWEEPS {
         watch.tick(sweep as f64 / SWEEPS as f64)?;
         let (cancelled, moved) = (work.cancel(watch)?, work.move_cones(watch)?);
@@ -78,7 +97,7 @@ pub fn clean_up(
             break;
         }
     }
-    stats.cones_after = work.n_cones();
+    stats.saved = before - work.count();
     let gauge = matched.turn(sectors, &work.transport);
     Ok((stats, gauge))
 }
@@ -115,8 +134,8 @@ impl<'a> CleanUp<'a> {
         })
     }
 
-    fn n_cones(&self) -> usize {
-        self.cones().len()
+    fn count(&self) -> i32 {
+        self.cones().into_iter().map(|s| self.options.count.of(self.excess(s))).sum()
     }
 
     /// Index beyond the preferred one: what makes a cone or a false corner. Free sectors have none.
@@ -132,12 +151,12 @@ impl<'a> CleanUp<'a> {
     fn allows(&self, v: Vertex, index: i32) -> bool {
         let (low, high) = self.sectors.bounds(v);
         let deviation = (f64::from(index) - self.curvature[v]).abs();
-        (low..=high).contains(&index) && deviation < LARGEST_DEVIATION
+        (low..=high).contains(&index) && deviation < self.options.largest_deviation
     }
 
     /// Cones fewer after sending a unit from one vertex to another.
     fn removed(&self, from: Vertex, to: Vertex) -> i32 {
-        let count = |k: i32| i32::from(k != 0);
+        let count = |k: i32| self.options.count.of(k);
         let (from, to) = (self.excess(from), self.excess(to));
         count(from) + count(to) - count(from - 1) - count(to + 1)
     }

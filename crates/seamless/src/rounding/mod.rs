@@ -11,7 +11,7 @@ mod surrogate;
 mod system;
 mod weights;
 
-pub use clean_up::{CleanUpError, CleanUpOptions, CleanUpStats, clean_up};
+pub use clean_up::{CleanUpError, CleanUpOptions, CleanUpStats, ConeCount, clean_up};
 pub use holonomy::fix_holonomy;
 pub use matched::MatchedCut;
 pub use progressive::{RoundingOptions, RoundingStats, RoundingStrategy, round};

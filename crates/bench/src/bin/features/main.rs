@@ -47,7 +47,7 @@ struct Args {
     corner_weights: Vec<f64>,
 
     /// Distortion that may be paid for one cone fewer
-    #[arg(long, value_name = "X", default_value_t = MapOptions::default().cone_price)]
+    #[arg(long, value_name = "X", default_value_t = 0.0006)]
     cone_price: f64,
 
     /// Map with `seamstress map` as well and check its map with `python3 SCRIPT --strict SOURCE MAP
@@ -121,7 +121,7 @@ fn row(
     let (features, source) = features_of(path, mesh, args)?;
     let mut options = MapOptions::default();
     options.rounding.corner_weight = args.corner_weight;
-    options.cone_price = args.cone_price;
+    options.cone_price = Some(args.cone_price);
     let (plain, plain_cpu) = solve(mesh, &EdgeSet::new(connectivity, []), &options)?;
     let (aligned, aligned_cpu) = solve(mesh, &features, &options)?;
     let verdict = verifier.map(|verifier| {

@@ -16,7 +16,7 @@ pub(crate) fn table(args: &Args, weights: &[f64]) -> Result<Table, Box<dyn Error
         for &weight in weights {
             let mut options = MapOptions::default();
             options.rounding.corner_weight = weight;
-            options.cone_price = args.cone_price;
+            options.cone_price = Some(args.cone_price);
             let solution = match solve(&mesh, &features, &options) {
                 Ok((solution, _)) => solution,
                 Err(error) => {

@@ -10,7 +10,7 @@ mod check;
 mod order;
 
 use clap::Parser;
-use seamstress::{GridSize, IntegerOptions, SeamlessMap, to_integer_map};
+use seamstress::{GridSize, IntegerOptions, to_integer_map};
 use seamstress_bench::maps::seamless;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
@@ -110,16 +110,9 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
                 continue;
             }
         };
-        let map = match seamless(&name, &mesh, args.maps.as_deref()) {
-            Ok((map, _)) => map,
-            Err(error) => {
-                failures.push(format!("* {name}: no seamless map: {error}"));
-                continue;
-            }
-        };
         let mut rows = Vec::new();
         for &asked in &args.quads {
-            match measure(&mesh, &map, asked, args) {
+            match measure(&name, &mesh, asked, args) {
                 Ok(row) => {
                     let cells = row.cells(&name, &mesh);
                     eprintln!("| {} |", cells.join(" | "));
@@ -165,14 +158,15 @@ struct Row {
     faults: Vec<String>,
 }
 
-fn measure(mesh: &Mesh, map: &SeamlessMap, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+    let (map, _) = seamless(name, mesh, asked, args.maps.as_deref())?;
     let (positions, faces) = (mesh.positions.as_slice(), mesh.faces());
     let source = (positions, faces.as_slice());
     let size = GridSize::Quads(asked);
     let made = manifold_quads(&mesh.connectivity, positions, size, |size| {
         let options = IntegerOptions { size, ..Default::default() };
         let mut go_on = |_| ControlFlow::Continue(());
-        to_integer_map(&mesh.connectivity, positions, map, &options, &mut go_on)
+        to_integer_map(&mesh.connectivity, positions, &map, &options, &mut go_on)
     })?;
     let (integer, extraction) = (made.integer.map, made.extraction);
 

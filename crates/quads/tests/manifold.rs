@@ -1,0 +1,43 @@
+//! Coarse grids, whose quads could easily be neighbours twice.
+#![allow(clippy::unwrap_used, reason = "helpers of a test")]
+
+use seamstress::{GridSize, IntegerOptions, MapOptions, make_map, to_integer_map};
+use seamstress_quads::manifold_quads;
+use seamstress_surface::soup::TriangleSoup;
+use seamstress_surface::{Metric, TriMesh};
+use seamstress_testkit as testkit;
+use std::ops::ControlFlow;
+
+/// Finer grids that the quads of a mesh took to be a manifold of its topology.
+fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
+    let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+    let size = GridSize::Quads(quads);
+    let cell = size.cell(Metric::from_positions(&mesh, &soup.positions).surface_area());
+    let options = MapOptions { cell: Some(cell), ..MapOptions::default() };
+    let mut go_on = |_| ControlFlow::Continue(());
+    let map = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap().map;
+    let made = manifold_quads(&mesh, &soup.positions, size, |size| {
+        let options = IntegerOptions { size, ..IntegerOptions::default() };
+        to_integer_map(&mesh, &soup.positions, &map, &options, &mut go_on)
+    })
+    .unwrap();
+    assert_eq!(made.connectivity.euler_characteristic(), mesh.euler_characteristic());
+    made.refinements
+}
+
+#[test]
+fn no_two_edges_join_the_same_points() {
+    let slab = testkit::subdivide(&testkit::slab_with_holes(6));
+    let thin = testkit::stretch(&slab, [1.0, 1.0, 0.15]);
+    let shapes = [
+        testkit::bumpy(&slab, 0.05, 3),
+        thin,
+        testkit::bumpy(&testkit::subdivide(&testkit::double_torus()), 0.05, 1),
+        testkit::bumpy(&testkit::torus(24, 12, 3.0, 0.5), 0.05, 2),
+    ];
+    for (k, shape) in shapes.iter().enumerate() {
+        for quads in [60.0, 120.0, 240.0] {
+            assert_eq!(refinements(shape, quads), 0, "shape {k}, {quads} quads");
+        }
+    }
+}
