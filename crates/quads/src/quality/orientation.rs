@@ -39,21 +39,32 @@ impl Orientation {
         let mut found = Self::default();
         for polygon in polygons {
             let at = |of: &[Point]| polygon.iter().map(|&v| of[v as usize]).collect::<Vec<_>>();
-            found.add(&at(positions), &at(&normals));
+            let one = Self::of_polygon(&at(positions), &at(&normals));
+            found.inverted += one.inverted;
+            found.crossed += one.crossed;
+            found.turned_corners += one.turned_corners;
         }
         Ok(found)
     }
 
-    fn add(&mut self, points: &[Point], normals: &[Point]) {
+    /// Of a single polygon, with the normals of the surface at its corners.
+    pub(crate) fn of_polygon(points: &[Point], normals: &[Point]) -> Self {
         let mean = normals.iter().copied().fold([0.0; 3], add);
-        self.inverted += usize::from(dot(vector_area(points), mean) <= 0.0);
-        self.crossed += usize::from(points.len() == 4 && is_crossed(points, mean));
         let n = points.len();
         let turns = |k: usize| {
             let [out, back] = [(k + 1) % n, (k + n - 1) % n].map(|j| sub(points[j], points[k]));
             dot(cross(out, back), normals[k]) <= 0.0
         };
-        self.turned_corners += (0..n).filter(|&k| turns(k)).count();
+        Self {
+            inverted: usize::from(dot(vector_area(points), mean) <= 0.0),
+            crossed: usize::from(n == 4 && is_crossed(points, mean)),
+            turned_corners: (0..n).filter(|&k| turns(k)).count(),
+        }
+    }
+
+    /// Whether any polygon is inverted or crossed.
+    pub(crate) fn is_faulty(self) -> bool {
+        self.inverted + self.crossed > 0
     }
 }
 
