@@ -150,10 +150,14 @@ fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>)
 
 fn orientation_text(orientation: &Orientation) -> String {
     let corners = counted(orientation.turned_corners, "corner");
+    let bent = match orientation.bent {
+        0 => String::new(),
+        n => format!("; {} bent over a thin sheet or sharp edge", counted(n, "face")),
+    };
     match orientation.inverted + orientation.crossed {
-        0 => format!("no face is inverted; {corners} turned against the source"),
+        0 => format!("no face is inverted; {corners} turned against the source{bent}"),
         _ => format!(
-            "{} inverted, {} crossed; {corners} turned against the source",
+            "{} inverted, {} crossed; {corners} turned against the source{bent}",
             counted(orientation.inverted, "face"),
             orientation.crossed
         ),

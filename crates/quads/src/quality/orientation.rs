@@ -15,6 +15,9 @@ pub struct Orientation {
     pub inverted: usize,
     /// Quads two of whose opposite sides cross, seen along that sum.
     pub crossed: usize,
+    /// Polygons that would be one or the other, but whose corners see no common side of the surface: bent over
+    /// a thin sheet or a sharp edge. There is no direction to judge them from.
+    pub bent: usize,
     /// Corners that turn against the surface's normal there.
     pub turned_corners: usize,
 }
@@ -42,6 +45,7 @@ impl Orientation {
             let one = Self::of_polygon(&at(positions), &at(&normals));
             found.inverted += one.inverted;
             found.crossed += one.crossed;
+            found.bent += one.bent;
             found.turned_corners += one.turned_corners;
         }
         Ok(found)
@@ -55,16 +59,20 @@ impl Orientation {
             let [out, back] = [(k + 1) % n, (k + n - 1) % n].map(|j| sub(points[j], points[k]));
             dot(cross(out, back), normals[k]) <= 0.0
         };
+        let is_inverted = dot(vector_area(points), mean) <= 0.0;
+        let is_crossed = n == 4 && is_crossed(points, mean);
+        let has_side = normals.iter().all(|&normal| dot(normal, mean) > 0.0);
         Self {
-            inverted: usize::from(dot(vector_area(points), mean) <= 0.0),
-            crossed: usize::from(n == 4 && is_crossed(points, mean)),
+            inverted: usize::from(is_inverted && has_side),
+            crossed: usize::from(is_crossed && has_side),
+            bent: usize::from((is_inverted || is_crossed) && !has_side),
             turned_corners: (0..n).filter(|&k| turns(k)).count(),
         }
     }
 
-    /// Whether any polygon is inverted or crossed.
+    /// Whether any polygon is inverted or crossed, or would be.
     pub(crate) fn is_faulty(self) -> bool {
-        self.inverted + self.crossed > 0
+        self.inverted + self.crossed + self.bent > 0
     }
 }
 
@@ -99,17 +107,28 @@ mod tests {
         assert_eq!(orientation(&square), Orientation::default());
         let mut reversed = square;
         reversed.reverse();
-        let expected = Orientation { inverted: 1, crossed: 0, turned_corners: 4 };
+        let expected = Orientation { inverted: 1, turned_corners: 4, ..Default::default() };
         assert_eq!(orientation(&reversed), expected);
         let dart = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
-        let expected = Orientation { inverted: 0, crossed: 0, turned_corners: 1 };
+        let expected = Orientation { turned_corners: 1, ..Default::default() };
         assert_eq!(orientation(&dart), expected);
         // More of it the right way round than not.
         let bow = [[0.0, 0.0], [2.0, 0.0], [0.9, 1.0], [1.0, 0.9]];
         assert_eq!(orientation(&bow).crossed, 0);
         let bow = [[0.0, 0.0], [3.0, 0.0], [0.5, 1.0], [2.0, 1.0]];
-        let expected = Orientation { inverted: 0, crossed: 1, turned_corners: 2 };
+        let expected = Orientation { crossed: 1, turned_corners: 2, ..Default::default() };
         assert_eq!(orientation(&bow), expected);
+    }
+
+    #[test]
+    fn a_quad_over_a_thin_sheet_has_no_side() {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
+        let of = |normals: [Point; 4]| Orientation::of_polygon(&square, &normals);
+        assert_eq!(of([up, up, up, down]), Orientation { turned_corners: 1, ..Default::default() });
+        let bent = of([down, down, down, up]);
+        assert_eq!((bent.inverted, bent.crossed, bent.bent), (0, 0, 1));
+        assert!(bent.is_faulty());
     }
 
     #[test]
