@@ -295,10 +295,9 @@ impl State<'_> {
     /// The mean length of the edges at a vertex.
     fn mean_edge(&self, v: u32) -> f64 {
         let here = self.positions[v as usize];
-        let (sum, n) = self.connectivity.neighbours(v).fold((0.0, 0), |(sum, n), w| {
-            (sum + norm(sub(self.positions[w as usize], here)), n + 1)
-        });
-        sum / f64::from(n)
+        let edge = |w: u32| norm(sub(self.positions[w as usize], here));
+        let share = 1.0 / self.connectivity.neighbours(v).count() as f64;
+        share * self.connectivity.neighbours(v).map(edge).sum::<f64>()
     }
 
     /// How far the quads around a vertex, were it elsewhere, are from the point it comes from.
@@ -322,7 +321,7 @@ impl State<'_> {
             .map(|w| sub(self.positions[w as usize], here))
             .collect();
         let share = 1.0 / neighbours.len() as f64;
-        let length = share * neighbours.iter().map(|&d| norm(d)).sum::<f64>();
+        let length = self.mean_edge(v);
         let mean = scale(neighbours.iter().copied().fold([0.0; 3], add), share);
         let mut targets = vec![add(here, mean), add(here, scale(mean, 0.5))];
         let Some(normal) = unit(self.normals[v as usize]) else { return (length, targets) };

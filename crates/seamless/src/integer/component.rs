@@ -187,6 +187,11 @@ impl<'a> IntegerProblem<'a> {
         }
         problem.factorize(SHIFT)?;
         let matrix = normalized(schur_complement(&problem, &space)?);
+        let turning = match aligned.is_empty() {
+            true => turned(&coordinates),
+            false => vec![0.0; coordinates.len()],
+        };
+        let moves = Moves::reduced(&matrix, &turning);
         let seconds = start.elapsed().as_secs_f64();
         let scene =
             Scene { mesh, cut: &cut, matching: &matching, needs: &needs, space: &space, z: &z };
@@ -204,7 +209,7 @@ impl<'a> IntegerProblem<'a> {
             problem,
             y,
             coordinates,
-            moves: Moves::reduced(&matrix),
+            moves,
             matrix,
             near,
             shapes,
@@ -243,7 +248,19 @@ impl<'a> IntegerProblem<'a> {
             (stats.nudges, stats.refinements) = (nudges, refinements);
             let h = share.sqrt() * cell / self.unit;
             for &care in cares {
-                match self.attempt(h, care, column, &mut stats, watch) {
+                let t0 = Instant::now();
+                let r = self.attempt(h, care, column, &mut stats, watch);
+                eprintln!(
+                    "DBG h {h:.4} nudge {nudges} ref {refinements} care {care:?} -> {} {:.2}s moves {} restarts {}",
+                    match &r {
+                        Ok(_) => "ok".into(),
+                        Err(e) => e.to_string(),
+                    },
+                    t0.elapsed().as_secs_f64(),
+                    stats.moves,
+                    stats.restarts
+                );
+                match r {
                     Ok((corner_uvs, columns)) => {
                         stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
                         return Ok(Placed { corner_uvs, columns, stats });
@@ -465,6 +482,11 @@ fn grid_needs(
         })
         .collect();
     needs
+}
+
+/// Real and imaginary parts by turns, turned by a quarter.
+fn turned(parts: &[f64]) -> Vec<f64> {
+    parts.chunks(2).flat_map(|z| [-z[1], z[0]]).collect()
 }
 
 /// Integers in the units of the layout.

@@ -1,14 +1,14 @@
 //! Integer steps that cost little.
 
 use super::conditional::Row;
-use super::reduced::Dense;
+use super::reduced::{Dense, dot};
 
 /// A basis of the integer vectors, reduced in pairs: no vector gets shorter by taking multiples of another one
-/// from it, in the energy with some weight on the coordinates themselves.
+/// from it, in the energy with a weight on turning the whole map.
 ///
-/// The weight keeps the vectors short: turning the whole map costs no energy, and long integer vectors come
-/// close to that. Moving a cone alone changes many coordinates at once where relations couple them. The reduced basis has
-/// such steps as vectors of their own.
+/// Moving a cone alone changes many coordinates at once where relations couple them; the reduced basis has
+/// such steps as vectors of their own. Turning costs no energy, and long integer vectors come close to it:
+/// the weight keeps them out.
 #[derive(Debug, Clone)]
 pub struct Moves {
     /// Coordinate and step.
@@ -17,21 +17,20 @@ pub struct Moves {
     pub matrix: Dense,
 }
 
-/// Weight of the coordinates, against the mean diagonal of the energy.
-const RIDGE: f64 = 0.002;
+/// Weight of a unit step of turning, against the mean diagonal of the energy.
+const TURNING: f64 = 1.0;
 /// Passes over all pairs at most.
 const MOST_SWEEPS: usize = 50;
 /// A fall of the energy that counts, as a share.
 const GAIN: f64 = 1e-9;
 
 impl Moves {
-    /// Reduces the unit vectors in an energy `x' P x`.
-    pub fn reduced(energy: &Dense) -> Self {
+    /// Reduces the unit vectors in an energy `x' P x`, given what turning the map does to the coordinates, up
+    /// to a factor; zero where it cannot be turned.
+    pub fn reduced(energy: &Dense, turning: &[f64]) -> Self {
         let n = energy.order;
         let mut matrix = energy.clone();
-        let mut ridged = energy.clone();
-        let trace: f64 = (0..n).map(|k| energy.row(k)[k]).sum();
-        (0..n).for_each(|k| ridged.values[k * n + k] += RIDGE * trace / n as f64);
+        let mut weighted = with_weight(energy, turning);
         let mut vectors = vec![0; n * n];
         (0..n).for_each(|k| vectors[k * n + k] = 1);
         for _ in 0..MOST_SWEEPS {
@@ -39,12 +38,12 @@ impl Moves {
             for i in 0..n {
                 for j in (0..n).filter(|&j| j != i) {
                     let (own, shared, other) =
-                        (ridged.row(i)[i], ridged.row(i)[j], ridged.row(j)[j]);
+                        (weighted.row(i)[i], weighted.row(i)[j], weighted.row(j)[j]);
                     let q = (shared / other).round();
                     if q != 0.0 && (q * other - 2.0 * shared) * q < -GAIN * own {
                         subtract(&mut vectors, n, i, j, q as i64);
                         matrix.subtract(i, j, q);
-                        ridged.subtract(i, j, q);
+                        weighted.subtract(i, j, q);
                         is_reduced = false;
                     }
                 }
@@ -59,6 +58,21 @@ impl Moves {
         };
         Self { vectors: (0..n).map(sparse).collect(), matrix }
     }
+}
+
+/// The energy with a weight on steps along a direction.
+fn with_weight(energy: &Dense, direction: &[f64]) -> Dense {
+    let n = energy.order;
+    let trace: f64 = (0..n).map(|k| energy.row(k)[k]).sum();
+    let square = dot(direction, direction);
+    let mut weighted = energy.clone();
+    if square > 0.0 {
+        let weight = TURNING * trace / n as f64 / square;
+        for (k, value) in weighted.values.iter_mut().enumerate() {
+            *value += weight * direction[k / n] * direction[k % n];
+        }
+    }
+    weighted
 }
 
 /// Takes `q` times vector j from vector i.
@@ -101,23 +115,22 @@ mod tests {
 
     #[test]
     fn pairs_are_reduced_and_the_matrix_is_theirs() {
+        let turning = [0.0, 1.0, -2.0, 0.5, 0.0, 3.0, -1.0];
         for seed in 0..20 {
             let energy = skewed(7, seed);
-            let Moves { vectors, matrix } = Moves::reduced(&energy);
+            let weighted = with_weight(&energy, &turning);
+            let Moves { vectors, matrix } = Moves::reduced(&energy, &turning);
             let dense = |row: &Row| {
                 let mut x = vec![0.0; 7];
                 row.iter().for_each(|&(k, c)| x[k] = c as f64);
                 x
             };
+            let product = |m: &Dense, u: &Row, v: &Row| apply(u, &m.multiply(&dense(v)));
             for (i, u) in vectors.iter().enumerate() {
                 for (j, v) in vectors.iter().enumerate() {
-                    let product = apply(u, &energy.multiply(&dense(v)));
-                    assert!((product - matrix.row(i)[j]).abs() < 1e-9, "seed {seed}");
-                    let ridge = RIDGE / 7.0 * (0..7).map(|k| energy.row(k)[k]).sum::<f64>();
-                    let plain: f64 = dense(u).iter().zip(dense(v)).map(|(a, b)| a * b).sum();
-                    let own =
-                        matrix.row(j)[j] + ridge * v.iter().map(|e| e.1 * e.1).sum::<i64>() as f64;
-                    let shared = product + ridge * plain;
+                    let off = product(&energy, u, v) - matrix.row(i)[j];
+                    assert!(off.abs() < 1e-9, "seed {seed}");
+                    let (shared, own) = (product(&weighted, u, v), product(&weighted, v, v));
                     assert!(i == j || shared.abs() <= (0.5 + 1e-6) * own, "seed {seed}");
                 }
             }
@@ -128,9 +141,8 @@ mod tests {
 
     #[test]
     fn they_are_a_basis() {
-        // Each step takes a multiple of one vector from another: undo them by Gauss's algorithm.
         for seed in 0..20 {
-            let vectors = Moves::reduced(&skewed(5, seed)).vectors;
+            let vectors = Moves::reduced(&skewed(5, seed), &[0.0; 5]).vectors;
             let mut rows = vec![vec![0i64; 5]; 5];
             for (row, vector) in rows.iter_mut().zip(&vectors) {
                 vector.iter().for_each(|&(k, c)| row[k] = c);
@@ -140,17 +152,13 @@ mod tests {
     }
 
     #[test]
-    fn directions_without_energy_do_not_lead_far() {
+    fn turning_does_not_lead_far() {
         // Energy only across the golden section, which integer vectors come close to without end.
         let across = [1.0, -1.618_033_988_749_895];
-        let values = vec![
-            across[0] * across[0],
-            across[0] * across[1],
-            across[1] * across[0],
-            across[1] * across[1],
-        ];
-        let Moves { vectors, .. } = Moves::reduced(&Dense { order: 2, values });
-        assert!(vectors.iter().flatten().all(|&(_, c)| c.abs() <= 144), "{vectors:?}");
+        let turning = [-across[1], across[0]];
+        let values = (0..4).map(|k| across[k / 2] * across[k % 2]).collect();
+        let Moves { vectors, .. } = Moves::reduced(&Dense { order: 2, values }, &turning);
+        assert!(vectors.iter().flatten().all(|&(_, c)| c.abs() <= 2), "{vectors:?}");
     }
 
     /// By expansion along the first row.

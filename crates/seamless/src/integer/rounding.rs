@@ -431,7 +431,7 @@ mod tests {
         let connections = [connection(&[(0, 1)], &[(1, 1)]), sum];
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
         let matrix = Dense { order: 4, values };
-        let moves = Moves::reduced(&matrix);
+        let moves = Moves::reduced(&matrix, &[0.0; 4]);
         RoundingProblem { matrix, moves, mean, constraints, shapes: vec![] }
     }
 

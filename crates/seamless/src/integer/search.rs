@@ -39,8 +39,8 @@ struct Search<'a> {
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
     violated: usize,
-    /// What violating each constraint counts in a repair, and each shape.
-    weights: [Vec<f64>; 2],
+    /// What violating each constraint counts in a repair, and after these each shape.
+    weights: Vec<f64>,
     /// For each constraint the shapes that it takes part in.
     shapes_of: Vec<Vec<usize>>,
     /// For each vector of the basis the constraints it moves, and how.
@@ -61,7 +61,7 @@ impl<'a> Search<'a> {
         let shapes_of = problem.shapes_of();
         let gain = 1e-6 * energy.abs() + 1e-12;
         let matrix = &basis.matrix;
-        let weights = [problem.constraints.len(), problem.shapes.len()].map(|n| vec![1.0; n]);
+        let weights = vec![1.0; problem.constraints.len() + problem.shapes.len()];
         let violated = 0;
         let mut search = Self {
             problem,
@@ -126,10 +126,11 @@ impl<'a> Search<'a> {
             _ => {}
         };
         for &(i, value) in &changed {
-            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[0][i]);
+            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[i]);
         }
         for k in shapes {
-            note(self.has_room(k, &[]), self.has_room(k, &changed), self.weights[1][k]);
+            let weight = self.weights[self.values.len() + k];
+            note(self.has_room(k, &[]), self.has_room(k, &changed), weight);
         }
         (count, weight)
     }
@@ -190,10 +191,7 @@ impl<'a> Search<'a> {
                         best = (self.violated, self.x.clone());
                     }
                 }
-                _ => match target.checked_sub(n) {
-                    None => self.weights[0][target] += 1.0,
-                    Some(k) => self.weights[1][k] += 1.0,
-                },
+                _ => self.weights[target] += 1.0,
             }
         }
         self.x = best.1;
