@@ -107,6 +107,16 @@ fn shapes_of_every_kind_have_integer_maps() {
 }
 
 #[test]
+fn integers_behind_a_wall_are_rounded_again() {
+    // Far fewer cells than its cones have room for.
+    let soup = testkit::random_surface(4);
+    let (_, solution) = integer(&soup, GridSize::Quads(40.0));
+    check_exactly(&soup, solution.map.corner_uvs());
+    assert!(solution.components[0].walls > 0, "the way is free from the start");
+    assert_eq!(solution.refinements(), 0);
+}
+
+#[test]
 fn the_result_is_the_same_every_time() {
     let soup = testkit::bumpy(&testkit::torus(20, 10, 1.0, 0.4), 0.05, 3);
     let [a, b] = [(); 2].map(|()| integer(&soup, GridSize::Quads(300.0)).1);

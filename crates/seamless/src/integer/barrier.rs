@@ -20,6 +20,8 @@ const CENTRING: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e
 const TINY_MOVE: f64 = 0.02;
 const MOST_TINY_MOVES: usize = 6;
 const SMALLEST_MOVE: f64 = 1e-6;
+/// The way is blocked where the energy exceeds this: ways that lead to the end stay below 17.
+const HOPELESS: f64 = 20.0;
 const SHIFT: f64 = 1e-8;
 
 /// How far the integral part came.
@@ -61,6 +63,10 @@ pub fn advance(
         }
         if taken < SHORT_MOVE {
             y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
+        }
+        let z = problem.space().expand(&y);
+        if problem.value(&SymmetricDirichlet, &z) > HOPELESS {
+            break;
         }
         tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
     }

@@ -1,6 +1,6 @@
 //! An integer map of one connected mesh.
 
-use super::barrier::advance;
+use super::barrier::{Advance, advance};
 use super::certificate::IntegerMap;
 use super::connections::connections;
 use super::gauss::{Gauss, Overflow};
@@ -8,11 +8,14 @@ use super::isolines::turning_points;
 use super::moves::Moves;
 use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{Constraint, RoundingProblem, Span, round_constrained, round_greedily};
+use super::rounding::{
+    Constraint, HOPELESS, Room, RoundingProblem, round_constrained, round_greedily,
+};
 use super::scene::{Connection, Scene, distinct};
 use super::shapes::{Shape, shapes};
 use super::snap::snap;
 use super::space::{GridNeeds, IntegerSpace};
+use super::walls::{Wall, walls};
 use super::{IntegerOptions, IntegerRounding};
 use crate::cut::Cut;
 use crate::layout::energy::SymmetricDirichlet;
@@ -37,6 +40,10 @@ const NEARBY: [f64; 7] = [1.0, 0.98, 1.02, 0.99, 1.01, 0.97, 1.03];
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried, as powers of that.
 const REFINEMENTS: [usize; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
+/// Roundings on one grid, each but the first with the walls that the one before ran into.
+const MOST_ROUNDS: usize = 9;
+/// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
+const LEAST_PUSH: f64 = 0.25;
 const SHIFT: f64 = 1e-8;
 const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
 
@@ -78,6 +85,11 @@ impl IntegerFailure {
     fn asks_for_finer_grid(&self) -> bool {
         matches!(self, Self::Conflict { .. } | Self::Blocked { .. } | Self::Uncertified(_))
     }
+
+    /// Whether grids nearby will hardly do either.
+    fn is_hopeless(&self) -> bool {
+        matches!(self, Self::Conflict { violated } if *violated > HOPELESS)
+    }
 }
 
 /// How the integer map of one component was made.
@@ -90,6 +102,8 @@ pub struct IntegerStats {
     pub integers: usize,
     /// Straight connections of cones, and ways to isolines, that were constrained.
     pub constraints: usize,
+    /// Walls that the way ran into and that were rounded around, on the last grid.
+    pub walls: usize,
     /// Times the rounding started over with other priorities.
     pub restarts: usize,
     /// Moves that carried the layout to the integers.
@@ -244,33 +258,20 @@ impl<'a> IntegerProblem<'a> {
             ..Default::default()
         };
         let mut first = None;
-        for Grid { nudges, refinements, share, cares } in self.grids(may_be_finer) {
-            (stats.nudges, stats.refinements) = (nudges, refinements);
-            let h = share.sqrt() * cell / self.unit;
-            for &care in cares {
-                let t0 = Instant::now();
-                let r = self.attempt(h, care, column, &mut stats, watch);
-                eprintln!(
-                    "DBG h {h:.4} nudge {nudges} ref {refinements} care {care:?} -> {} {:.2}s moves {} restarts {}",
-                    match &r {
-                        Ok(_) => "ok".into(),
-                        Err(e) => e.to_string(),
-                    },
-                    t0.elapsed().as_secs_f64(),
-                    stats.moves,
-                    stats.restarts
-                );
-                match r {
+        for group in self.grids(may_be_finer) {
+            for grid in group {
+                (stats.nudges, stats.refinements) = (grid.nudges, grid.refinements);
+                let h = grid.share.sqrt() * cell / self.unit;
+                match self.attempt_with(h, grid.cares, column, &mut stats, watch) {
                     Ok((corner_uvs, columns)) => {
                         stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
                         return Ok(Placed { corner_uvs, columns, stats });
                     }
                     Err(failure) if !failure.asks_for_finer_grid() => return Err(failure),
                     Err(failure) => {
-                        // What already conflicts does so with more care, too.
-                        let is_conflict = matches!(failure, IntegerFailure::Conflict { .. });
+                        let is_hopeless = failure.is_hopeless();
                         first.get_or_insert(failure);
-                        if is_conflict {
+                        if is_hopeless {
                             break;
                         }
                     }
@@ -280,25 +281,55 @@ impl<'a> IntegerProblem<'a> {
         Err(first.unwrap_or(IntegerFailure::Unreadable))
     }
 
-    /// The grids to try, one after the other: first nearby ones, then finer ones.
-    fn grids(&self, may_be_finer: bool) -> Vec<Grid> {
+    /// The grids to try, one after the other: first nearby ones, then finer ones. In a group all are alike, so
+    /// that the rest of it need not be tried once one is hopeless.
+    fn grids(&self, may_be_finer: bool) -> Vec<Vec<Grid>> {
         if self.options.rounding == IntegerRounding::Greedy {
-            return vec![Grid { nudges: 0, refinements: 0, share: 1.0, cares: &[Care::Faces] }];
+            return vec![vec![Grid {
+                nudges: 0,
+                refinements: 0,
+                share: 1.0,
+                cares: &[Care::Faces],
+            }]];
         }
         let careful: &[Care] = &[Care::Faces, Care::Vertices];
-        let mut grids = Vec::new();
-        for cares in [careful, &[Care::Cones]] {
-            for (nudges, share) in NEARBY.into_iter().enumerate() {
-                grids.push(Grid { nudges, refinements: 0, share, cares });
-            }
-        }
+        // Where another size has a map already, the one asked for will do.
+        let n_nearby = if may_be_finer { NEARBY.len() } else { 1 };
+        let nearby = |cares| {
+            let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, cares };
+            NEARBY[..n_nearby].iter().enumerate().map(grid).collect()
+        };
+        let mut groups = vec![nearby(careful), nearby(&[Care::Cones])];
         for &refinements in REFINEMENTS.iter().filter(|_| may_be_finer) {
             let share = REFINEMENT.powi(-(refinements as i32));
             for cares in [careful, &[Care::Cones]] {
-                grids.push(Grid { nudges: 0, refinements, share, cares });
+                groups.push(vec![Grid { nudges: 0, refinements, share, cares }]);
             }
         }
-        grids
+        groups
+    }
+
+    /// One grid with more and more care; the failure of the last.
+    fn attempt_with(
+        &mut self,
+        h: f64,
+        cares: &[Care],
+        column: i64,
+        stats: &mut IntegerStats,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
+        let mut result = Err(IntegerFailure::Unreadable);
+        for &care in cares {
+            result = self.attempt(h, care, column, stats, watch);
+            // What conflicts does so with more care, too.
+            if !matches!(
+                result,
+                Err(IntegerFailure::Blocked { .. } | IntegerFailure::Uncertified(_))
+            ) {
+                break;
+            }
+        }
+        result
     }
 
     /// One grid: rounds, moves to the integers, polishes, writes in exact numbers and certifies.
@@ -334,28 +365,39 @@ impl<'a> IntegerProblem<'a> {
         stats: &mut IntegerStats,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(Vec<i64>, Vec<f64>), IntegerFailure> {
-        watch.tick(0.1)?;
+        let mut rounding = self.rounding_problem(h, care)?;
+        stats.walls = 0;
+        let mut rounds = 1;
+        let (held, y) = loop {
+            watch.tick(0.1)?;
+            let clock = Instant::now();
+            let rounded = round_constrained(&rounding)?;
+            let held = self.space.expand(&rounded.x)?;
+            stats.constraints = rounding.constraints.len();
+            stats.restarts += rounded.restarts;
+            stats.seconds_rounding += clock.elapsed().as_secs_f64();
+            if rounded.violated > 0 {
+                return Err(IntegerFailure::Conflict { violated: rounded.violated });
+            }
+            watch.tick(0.4)?;
+            let clock = Instant::now();
+            let target = in_layout(&held, h);
+            let Advance { y, reached, moves } =
+                advance(&mut self.problem, self.y.clone(), &target, watch)?;
+            stats.seconds_moving += clock.elapsed().as_secs_f64();
+            stats.moves = moves;
+            if reached == 1.0 {
+                break (held, y);
+            }
+            let walls = self.walls(&rounded.x, &y, h)?;
+            if rounds == MOST_ROUNDS || walls.is_empty() {
+                return Err(IntegerFailure::Blocked { reached });
+            }
+            rounds += 1;
+            stats.walls += walls.len();
+            walls.into_iter().for_each(|(ways, room)| rounding.add(ways, room));
+        };
         let clock = Instant::now();
-        let rounding = self.rounding_problem(h, care)?;
-        let rounded = round_constrained(&rounding)?;
-        let held = self.space.expand(&rounded.x)?;
-        stats.constraints = rounding.constraints.len();
-        stats.restarts += rounded.restarts;
-        stats.seconds_rounding += clock.elapsed().as_secs_f64();
-        if rounded.violated > 0 {
-            return Err(IntegerFailure::Conflict { violated: rounded.violated });
-        }
-        watch.tick(0.4)?;
-        let clock = Instant::now();
-        let target = in_layout(&held, h);
-        let advance = advance(&mut self.problem, self.y.clone(), &target, watch)?;
-        stats.seconds_moving += clock.elapsed().as_secs_f64();
-        stats.moves = advance.moves;
-        if advance.reached < 1.0 {
-            return Err(IntegerFailure::Blocked { reached: advance.reached });
-        }
-        let clock = Instant::now();
-        let y = advance.y;
         let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
         stats.seconds_polish += clock.elapsed().as_secs_f64();
         stats.polish = polished.iterations;
@@ -363,8 +405,7 @@ impl<'a> IntegerProblem<'a> {
     }
 
     fn connections(&self, z: &[Complex64], radius: f64) -> Result<Vec<Connection>, Overflow> {
-        let (mesh, cut, matching) = (self.mesh, &self.cut, &self.matching);
-        let scene = Scene { mesh, cut, matching, needs: &self.needs, space: &self.space, z };
+        let scene = self.scene(z);
         let mut all = connections(&scene, radius)?;
         if !self.aligned.is_empty() {
             all.extend(ways_to_isolines(&scene, radius)?);
@@ -385,18 +426,50 @@ impl<'a> IntegerProblem<'a> {
             let least = if care == Care::Cones { 1 } else { c.least };
             Constraint { least, ..Constraint::new(c, &self.coordinates, h) }
         };
-        let mut constraints: Vec<Constraint> = short.map(constraint).collect();
-        let mut spans = Vec::new();
+        let constraints: Vec<Constraint> = short.map(constraint).collect();
+        let (matrix, moves) = (self.matrix.clone(), self.moves.clone());
+        let mut rounding = RoundingProblem { matrix, moves, mean, constraints, shapes: Vec::new() };
         let matters =
             |shape: &&Shape| shape.extent < radius && (shape.is_face || care == Care::Vertices);
         for shape in self.shapes.iter().filter(matters) {
-            let first = constraints.len();
-            constraints.extend(shape.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h)));
-            let ways = (first..constraints.len()).collect();
-            spans.push(Span { ways, sides: shape.sides.clone() });
+            let ways = shape.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h));
+            rounding.add(ways.collect(), Room::Vertex { sides: shape.sides.clone() });
         }
-        let (matrix, moves) = (self.matrix.clone(), self.moves.clone());
-        Ok(RoundingProblem { matrix, moves, mean, constraints, shapes: spans })
+        Ok(rounding)
+    }
+
+    /// What keeps the rounding from integers that block the way as these do, given the layout where they do.
+    /// Nothing where edges are aligned: isolines would take part in it.
+    fn walls(
+        &self,
+        x: &[i64],
+        y: &[f64],
+        h: f64,
+    ) -> Result<Vec<(Vec<Constraint>, Room)>, Overflow> {
+        if !self.aligned.is_empty() {
+            return Ok(Vec::new());
+        }
+        let z = self.problem.space().expand(y);
+        let here = self.space.read(&z).0;
+        let room = |wall: Wall| {
+            let ways: Vec<Constraint> =
+                wall.ways.iter().map(|way| Constraint::new(way, &here, h)).collect();
+            let along = |displacement: &dyn Fn(&Constraint) -> [f64; 2]| -> f64 {
+                let pairs = ways.iter().map(displacement).zip(&wall.pushes);
+                pairs.map(|([u, v], push)| push[0] * u + push[1] * v).sum()
+            };
+            let (at_x, at_here) = (along(&|way| way.at(x)), along(&|way| way.start));
+            let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
+            (ways, Room::Triangles { pushes: wall.pushes, more_than })
+        };
+        let found = walls(&self.scene(&z), self.problem.triangles())?;
+        Ok(found.into_iter().map(room).collect())
+    }
+
+    /// A layout of the component.
+    fn scene<'s>(&'s self, z: &'s [Complex64]) -> Scene<'s> {
+        let (mesh, cut, matching) = (self.mesh, &self.cut, &self.matching);
+        Scene { mesh, cut, matching, needs: &self.needs, space: &self.space, z }
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a

@@ -7,7 +7,8 @@
 //! 2. [`reduced`]: the energy as a quadratic function of those coordinates alone;
 //! 3. [`connections`], [`rays`], [`rounding`], [`search`]: the nearest integer point in that energy at
 //!    which no straight line between cones or isolines collapses;
-//! 4. [`barrier`]: the layout moves there without a flip;
+//! 4. [`barrier`]: the layout moves there without a flip; where it cannot, [`walls`] say what other integers
+//!    have to satisfy, and the rounding is done again;
 //! 5. [`snap`]: doubles that fit to the last bit;
 //! 6. [`IntegerMap::certify`], the only door to an integer map.
 
@@ -30,6 +31,7 @@ pub mod snap;
 mod solve;
 pub mod space;
 mod walk;
+pub mod walls;
 
 use crate::map::Tolerance;
 

@@ -6,6 +6,7 @@ use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
 use super::shapes::has_room;
+use rayon::prelude::*;
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
@@ -63,6 +64,13 @@ pub struct RoundingProblem {
 }
 
 impl RoundingProblem {
+    /// Adds points that must leave room, with the ways from the origin to the others.
+    pub fn add(&mut self, ways: Vec<Constraint>, room: Room) {
+        let first = self.constraints.len();
+        self.constraints.extend(ways);
+        self.shapes.push(Span { ways: (first..self.constraints.len()).collect(), room });
+    }
+
     /// For each constraint the shapes that it takes part in, by number.
     pub(super) fn shapes_of(&self) -> Vec<Vec<usize>> {
         let mut shapes_of = vec![Vec::new(); self.constraints.len()];
@@ -73,25 +81,55 @@ impl RoundingProblem {
     }
 }
 
-/// Points that must leave room for a vertex; see [`super::shapes::Shape`].
+/// Points that must leave room for what is between them.
 #[derive(Debug, Clone)]
 pub struct Span {
     /// The constraints that lead from the origin to the other points, by number.
     pub ways: Vec<usize>,
-    /// Lines between points, 0 the origin, to be seen from their left.
-    pub sides: Vec<[usize; 2]>,
+    /// What there must be room for.
+    pub room: Room,
+}
+
+/// What points must leave room for.
+#[derive(Debug, Clone)]
+pub enum Room {
+    /// A vertex that sees these lines between points, 0 the origin, from their left; see
+    /// [`super::shapes::Shape`].
+    Vertex {
+        /// Numbers of the points of each line.
+        sides: Vec<[usize; 2]>,
+    },
+    /// Triangles that push the points apart, so that these have to be further than this along the pushes; see
+    /// [`super::walls::Wall`].
+    Triangles {
+        /// One for each way.
+        pushes: Vec<[f64; 2]>,
+        /// The sum over all ways of push times displacement has to be more.
+        more_than: f64,
+    },
 }
 
 impl Span {
     /// Whether there is room when the constraints have these displacements.
     pub fn has_room(&self, displacement: impl Fn(usize) -> [f64; 2]) -> bool {
-        if let (&[i, j], 3) = (self.ways.as_slice(), self.sides.len()) {
-            let ([a, b], [c, d]) = (displacement(i), displacement(j));
-            return a * d - b * c > LEFT_TURN;
+        match &self.room {
+            Room::Triangles { pushes, more_than } => {
+                let along = |(&i, [a, b]): (&usize, &[f64; 2])| {
+                    let [u, v] = displacement(i);
+                    a * u + b * v
+                };
+                self.ways.iter().zip(pushes).map(along).sum::<f64>() > *more_than
+            }
+            Room::Vertex { sides } => {
+                if let (&[i, j], 3) = (self.ways.as_slice(), sides.len()) {
+                    let ([a, b], [c, d]) = (displacement(i), displacement(j));
+                    return a * d - b * c > LEFT_TURN;
+                }
+                let others = self.ways.iter().map(|&i| displacement(i));
+                let points: Vec<[f64; 2]> = std::iter::once([0.0; 2]).chain(others).collect();
+                has_room(sides, |k| points[k])
+            }
         }
-        let points: Vec<[f64; 2]> =
-            std::iter::once([0.0; 2]).chain(self.ways.iter().map(|&i| displacement(i))).collect();
-        has_room(&self.sides, |k| points[k])
     }
 }
 
@@ -114,7 +152,7 @@ const SHORT: f64 = 2.0;
 /// Restarts with other priorities.
 const MOST_RESTARTS: usize = 5;
 /// More violated connections than this are left to a finer grid.
-const HOPELESS: usize = 16;
+pub(super) const HOPELESS: usize = 16;
 /// How much a restart moves a connection forward, grid units of length.
 const PRIORITY: f64 = 10.0;
 /// Values tried for a connection, the cheapest first.
@@ -123,6 +161,8 @@ const TRIED: usize = 8;
 const REACH: i64 = 2;
 /// A determined value this close to an integer is that integer.
 const SAME: f64 = 1e-5;
+/// Connections per parallel task.
+const CHUNK: usize = 512;
 /// A row whose variance is below this share of the mean is determined.
 const DETERMINED: f64 = 1e-9;
 
@@ -371,7 +411,8 @@ impl<'a> Fixing<'a> {
             true => self.rows.apply(i, spread),
             false => [0.0; 2],
         };
-        let coupling = self.variances.iter().enumerate().map(coupling).collect();
+        let coupling =
+            self.variances.par_iter().enumerate().with_min_len(CHUNK).map(coupling).collect();
         Part { effect, coupling, variance: apply(row, spread) }
     }
 
@@ -480,11 +521,31 @@ mod tests {
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
             let sides = vec![[0, 1], [1, 2], [2, 0]];
-            problem.shapes = vec![Span { ways: vec![0, 1], sides }];
+            problem.shapes = vec![Span { ways: vec![0, 1], room: Room::Vertex { sides } }];
             let rounded = round_constrained(&problem).unwrap();
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
             let cross = a[0] * b[1] - a[1] * b[0];
             assert!(rounded.violated == 0 && cross > 0.0, "seed {seed}: {a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn points_end_beyond_a_wall() {
+        for seed in 0..40 {
+            let mut problem = problem(seed);
+            let free = round_constrained(&problem).unwrap();
+            let way = problem.constraints[0].clone();
+            let push = [0.6, 0.8];
+            let along = |x: &[i64]| {
+                let [u, v] = way.at(x);
+                push[0] * u + push[1] * v
+            };
+            let more_than = along(&free.x) + 0.25;
+            problem.add(vec![way.clone()], Room::Triangles { pushes: vec![push], more_than });
+            let rounded = round_constrained(&problem).unwrap();
+            assert!(rounded.violated == 0 && along(&rounded.x) > more_than, "seed {seed}");
+            let energy = |x: &[i64]| energy(&problem.matrix, &problem.mean, x);
+            assert!(energy(&rounded.x) >= energy(&free.x) - 1e-12, "seed {seed}");
         }
     }
 

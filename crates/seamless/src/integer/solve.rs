@@ -221,6 +221,7 @@ impl<'p> Run<'p, '_, '_> {
                 // Where there is nothing, go only half as far.
                 (Err(IntegerError::Component { .. }), Some(best)) => {
                     cell = (best.1 * cell).sqrt();
+                    is_promising = false;
                     continue;
                 }
                 (placed, _) => placed?,

@@ -1,0 +1,188 @@
+//! What blocks the way to the integers.
+
+use super::conditional::Row;
+use super::gauss::Overflow;
+use super::scene::{Connection, Scene, Sight};
+use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
+use crate::layout::triangle::Triangle;
+use crate::quarter::turn;
+use num_complex::Complex64;
+use seamstress_surface::{Face, FaceData, Halfedge, TriMesh};
+use std::collections::{BTreeMap, VecDeque};
+
+/// Triangles that push with less than this share of the strongest push are not what blocks the way.
+const WEAK: f64 = 0.02;
+
+/// A cluster of collapsing triangles as the grid points around it feel it.
+///
+/// Between them ordinary vertices are in balance, so that near the collapse the areas of the triangles, with
+/// the pushes as multipliers, add up to a linear form in the displacements of the grid points alone:
+/// they must move along the pushes. These are the multipliers of Farkas' lemma, found by a barrier.
+#[derive(Debug, Clone)]
+pub struct Wall {
+    /// The ways from one of the grid points to the others.
+    pub ways: Vec<Connection>,
+    /// What pushes each of these, the strongest push one.
+    pub pushes: Vec<[f64; 2]>,
+}
+
+/// A face of a cluster and the half-edges crossed on the way there from the first one.
+type Reached = (Face, Vec<Halfedge>);
+
+/// The walls around clusters of collapsing triangles.
+///
+/// # Errors
+/// [`Overflow`].
+pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Overflow> {
+    let pushes: Vec<[Complex64; 3]> = triangles.iter().map(|t| pushes(t, scene.z)).collect();
+    let strength: Vec<f64> =
+        pushes.iter().map(|p| p.iter().map(|f| f.norm()).fold(0.0, f64::max)).collect();
+    let strongest = strength.iter().copied().fold(0.0, f64::max);
+    let mut is_open: FaceData<bool> = strength.iter().map(|&s| s > WEAK * strongest).collect();
+    let mut found = Vec::new();
+    for f in scene.mesh.faces() {
+        let has_point = scene.mesh.face_vertices(f).iter().any(|&v| scene.needs.is_point[v]);
+        if is_open[f] && has_point {
+            let cluster = cluster(scene, f, &mut is_open);
+            found.extend(wall(scene, &cluster, &pushes)?);
+        }
+    }
+    Ok(found)
+}
+
+/// The forces of a triangle's energy on its corners.
+fn pushes(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
+    let d = ProjectedHessian::new(&SymmetricDirichlet, &t.jacobian(z)).gradient;
+    t.gradients
+        .map(|g| -t.weight * Complex64::new(d[0] * g[0] + d[1] * g[1], d[2] * g[0] + d[3] * g[1]))
+}
+
+/// Open faces that hang together at ordinary vertices; they are closed.
+fn cluster(scene: &Scene<'_>, first: Face, is_open: &mut FaceData<bool>) -> Vec<Reached> {
+    is_open[first] = false;
+    let mut cluster = vec![(first, Vec::new())];
+    let mut queue = VecDeque::from([0]);
+    while let Some(k) = queue.pop_front() {
+        let (face, crossed): Reached = cluster[k].clone();
+        for corner in face.halfedges() {
+            if scene.needs.is_point[scene.mesh.origin(corner)] {
+                continue;
+            }
+            for (f, around) in faces_around(scene.mesh, corner) {
+                if is_open[f] {
+                    is_open[f] = false;
+                    queue.push_back(cluster.len());
+                    cluster.push((f, crossed.iter().copied().chain(around).collect()));
+                }
+            }
+        }
+    }
+    cluster
+}
+
+/// The other faces at a vertex and how they are reached around it from a corner there.
+fn faces_around(mesh: &TriMesh, corner: Halfedge) -> Vec<Reached> {
+    let mut found = Vec::new();
+    let mut walk = |next: &dyn Fn(Halfedge) -> (Halfedge, Option<Halfedge>)| {
+        let (mut at, mut crossed) = (corner, Vec::new());
+        loop {
+            let (edge, Some(beyond)) = next(at) else { return false };
+            if beyond == corner {
+                return true;
+            }
+            crossed.push(edge);
+            at = beyond;
+            found.push((at.face(), crossed.clone()));
+        }
+    };
+    let is_closed = walk(&|h| (h.prev(), mesh.twin(h.prev())));
+    if !is_closed {
+        walk(&|h| (h, mesh.twin(h).map(Halfedge::next)));
+    }
+    found
+}
+
+/// What a cluster asks of the grid points at its corners, a corner of its first face and the others, if there
+/// are any.
+fn wall(
+    scene: &Scene<'_>,
+    cluster: &[Reached],
+    pushes: &[[Complex64; 3]],
+) -> Result<Option<Wall>, Overflow> {
+    let is_point = |h: &Halfedge| scene.needs.is_point[scene.mesh.origin(*h)];
+    let Some(from) = cluster[0].0.halfedges().into_iter().find(is_point) else { return Ok(None) };
+    // Several corners may be at the end of one way.
+    let mut ways: BTreeMap<[Row; 2], Complex64> = BTreeMap::new();
+    for (f, crossed) in cluster {
+        for (to, push) in f.halfedges().into_iter().zip(pushes[f.0 as usize]) {
+            if is_point(&to) {
+                let (turns, _) = scene.carry(crossed)?;
+                let way = scene.line(&Sight { from, to, length: 0.0, crossed: crossed.clone() })?;
+                *ways.entry(way.rows).or_default() += turn(push, turns);
+            }
+        }
+    }
+    ways.retain(|rows, _| rows.iter().any(|row| !row.is_empty()));
+    let strongest = ways.values().map(|push| push.norm()).fold(0.0, f64::max);
+    let scaled = |(rows, push): ([Row; 2], Complex64)| {
+        (Connection { length: 0.0, rows, least: 1 }, [push.re / strongest, push.im / strongest])
+    };
+    let (ways, pushes) = ways.into_iter().map(scaled).unzip();
+    Ok((strongest > 0.0).then_some(Wall { ways, pushes }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::connect_cones;
+    use crate::integer::conditional::apply;
+    use crate::integer::space::{GridNeeds, IntegerSpace};
+    use crate::layout::triangle::triangles;
+    use seamstress_surface::{HalfedgeData, Metric, VertexData};
+
+    /// Four vertices, the last in the middle of the others, which are grid points, in a layout `height` times
+    /// as high as the surface; the pushes on the second and on the third against the first.
+    fn pushes_in(height: f64) -> Vec<[f64; 2]> {
+        let positions = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [5.0 / 3.0, 1.0, 0.0]];
+        let mesh = TriMesh::from_faces(4, &[[0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+        let metric = Metric::from_positions(&mesh, &positions);
+        let no_cones = VertexData::filled(4, false);
+        let (cut, _) = connect_cones(&mesh, &metric, &no_cones).unwrap();
+        let matching = HalfedgeData::filled(mesh.n_halfedges(), 0);
+        let mut needs = GridNeeds::cones(no_cones);
+        mesh.vertices().take(3).for_each(|v| needs.is_point[v] = true);
+        let space = IntegerSpace::new(&mesh, &cut, &matching, &needs).unwrap();
+        let mut z = vec![Complex64::ZERO; cut.n_wedges];
+        for h in mesh.halfedges() {
+            let [x, y, _] = positions[mesh.origin(h).at()];
+            z[cut.wedge[h] as usize] = Complex64::new(x, height * y);
+        }
+        let (cut, needs, space) = (&cut, &needs, &space);
+        let scene = Scene { mesh: &mesh, cut, matching: &matching, needs, space, z: &z };
+        let walls = walls(&scene, &triangles(&mesh, &metric, cut)).unwrap();
+        assert_eq!(walls.len(), 1);
+        let coordinates = space.read(&z).0;
+        let at = |way: &Connection| way.rows.each_ref().map(|row| apply(row, &coordinates));
+        let mut ways: Vec<([f64; 2], [f64; 2])> =
+            walls[0].ways.iter().map(at).zip(walls[0].pushes.iter().copied()).collect();
+        // The second is on the first one's line.
+        ways.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
+        let is_at = |way: [f64; 2], x: f64, y: f64| (way[0] - x).hypot(way[1] - y) < 1e-9;
+        assert!(is_at(ways[0].0, 4.0, 0.0) && is_at(ways[1].0, 1.0, 3.0 * height));
+        ways.into_iter().map(|(_, push)| push).collect()
+    }
+
+    #[test]
+    fn a_flat_triangle_of_grid_points_pushes_its_tip_away() {
+        // Twice the area is 4 y_tip - 1 y_second for these abscissae: multipliers 4 and -1.
+        let [second, tip] = pushes_in(0.01)[..] else { panic!() };
+        let off = |push: [f64; 2], y: f64| (push[0]).hypot(push[1] - y);
+        assert!(off(tip, 1.0) < 0.01 && off(second, -0.25) < 0.01, "{second:?} {tip:?}");
+    }
+
+    #[test]
+    fn a_stretched_triangle_pulls() {
+        let [_, tip] = pushes_in(100.0)[..] else { panic!() };
+        assert!(tip[1] < -0.9, "{tip:?}");
+    }
+}
