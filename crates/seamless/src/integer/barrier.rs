@@ -20,8 +20,11 @@ const CENTRING: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e
 const TINY_MOVE: f64 = 0.02;
 const MOST_TINY_MOVES: usize = 6;
 const SMALLEST_MOVE: f64 = 1e-6;
-/// The way is blocked where the energy exceeds this: ways that lead to the end stay below 17.
-const HOPELESS: f64 = 20.0;
+/// The way is also blocked where the layout becomes flat: where with this share left a short move raises an
+/// energy above this by this factor.
+const CLOSE: f64 = 0.1;
+const HIGH: f64 = 20.0;
+const STEEP: f64 = 1.1;
 const SHIFT: f64 = 1e-8;
 
 /// How far the integral part came.
@@ -51,6 +54,7 @@ pub fn advance(
 ) -> Result<Advance, Cancelled> {
     let n_free = problem.n_free();
     let (mut rest, mut tiny, mut moves) = (1.0, 0, 0);
+    let mut energy = f64::INFINITY;
     while moves < MOST_MOVES && tiny < MOST_TINY_MOVES {
         watch.pulse()?;
         let Some(taken) = advance_once(problem, &mut y, target) else { break };
@@ -63,10 +67,11 @@ pub fn advance(
         }
         if taken < SHORT_MOVE {
             y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
-        }
-        let z = problem.space().expand(&y);
-        if problem.value(&SymmetricDirichlet, &z) > HOPELESS {
-            break;
+            let before = energy;
+            energy = problem.value(&SymmetricDirichlet, &problem.space().expand(&y));
+            if rest < CLOSE && energy > HIGH.max(STEEP * before) {
+                break;
+            }
         }
         tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
     }

@@ -36,6 +36,8 @@ const CONSTRAINED_LENGTH: f64 = 2.5;
 /// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
 /// within a few percent, but other integers are near.
 const NEARBY: [f64; 7] = [1.0, 0.98, 1.02, 0.99, 1.01, 0.97, 1.03];
+/// How many of them where there is a map of another size.
+const FEW_NEARBY: usize = 3;
 /// What the area of a cell falls by when the grid is made finer.
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried, as powers of that.
@@ -293,14 +295,17 @@ impl<'a> IntegerProblem<'a> {
             }]];
         }
         let careful: &[Care] = &[Care::Faces, Care::Vertices];
-        // Where another size has a map already, the one asked for will do.
-        let n_nearby = if may_be_finer { NEARBY.len() } else { 1 };
-        let nearby = |cares| {
+        let nearby = |n: usize, cares| {
             let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, cares };
-            NEARBY[..n_nearby].iter().enumerate().map(grid).collect()
+            NEARBY[..n].iter().enumerate().map(grid).collect()
         };
-        let mut groups = vec![nearby(careful), nearby(&[Care::Cones])];
-        for &refinements in REFINEMENTS.iter().filter(|_| may_be_finer) {
+        if !may_be_finer {
+            // Another size has a map already.
+            return vec![nearby(FEW_NEARBY, careful)];
+        }
+        let n = NEARBY.len();
+        let mut groups = vec![nearby(n, careful), nearby(n, &[Care::Cones])];
+        for &refinements in &REFINEMENTS {
             let share = REFINEMENT.powi(-(refinements as i32));
             for cares in [careful, &[Care::Cones]] {
                 groups.push(vec![Grid { nudges: 0, refinements, share, cares }]);
