@@ -4,6 +4,7 @@ use super::barrier::{Advance, advance};
 use super::certificate::IntegerMap;
 use super::connections::connections;
 use super::gauss::{Gauss, Overflow};
+use super::grids::{Care, grids};
 use super::isolines::turning_points;
 use super::moves::Moves;
 use super::rays::ways_to_isolines;
@@ -33,19 +34,8 @@ use std::time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;
-/// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
-/// within a few percent, but other integers are near.
-const NEARBY: [f64; 7] = [1.0, 0.98, 1.02, 0.99, 1.01, 0.97, 1.03];
-/// How many of them where there is a map of another size.
-const FEW_NEARBY: usize = 3;
-/// What the area of a cell falls by when the grid is made finer.
-const REFINEMENT: f64 = 1.1;
-/// Finer grids tried, as powers of that.
-const REFINEMENTS: [usize; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 /// Roundings on one grid, each but the first with the walls that the one before ran into.
 const MOST_ROUNDS: usize = 9;
-/// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
-const LEAST_PUSH: f64 = 0.25;
 const SHIFT: f64 = 1e-8;
 const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
 
@@ -260,7 +250,7 @@ impl<'a> IntegerProblem<'a> {
             ..Default::default()
         };
         let mut first = None;
-        for group in self.grids(may_be_finer) {
+        for group in grids(self.options.rounding, may_be_finer) {
             for grid in group {
                 (stats.nudges, stats.refinements) = (grid.nudges, grid.refinements);
                 let h = grid.share.sqrt() * cell / self.unit;
@@ -281,37 +271,6 @@ impl<'a> IntegerProblem<'a> {
             }
         }
         Err(first.unwrap_or(IntegerFailure::Unreadable))
-    }
-
-    /// The grids to try, one after the other: first nearby ones, then finer ones. In a group all are alike, so
-    /// that the rest of it need not be tried once one is hopeless.
-    fn grids(&self, may_be_finer: bool) -> Vec<Vec<Grid>> {
-        if self.options.rounding == IntegerRounding::Greedy {
-            return vec![vec![Grid {
-                nudges: 0,
-                refinements: 0,
-                share: 1.0,
-                cares: &[Care::Faces],
-            }]];
-        }
-        let careful: &[Care] = &[Care::Faces, Care::Vertices];
-        let nearby = |n: usize, cares| {
-            let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, cares };
-            NEARBY[..n].iter().enumerate().map(grid).collect()
-        };
-        if !may_be_finer {
-            // Another size has a map already.
-            return vec![nearby(FEW_NEARBY, careful)];
-        }
-        let n = NEARBY.len();
-        let mut groups = vec![nearby(n, careful), nearby(n, &[Care::Cones])];
-        for &refinements in &REFINEMENTS {
-            let share = REFINEMENT.powi(-(refinements as i32));
-            for cares in [careful, &[Care::Cones]] {
-                groups.push(vec![Grid { nudges: 0, refinements, share, cares }]);
-            }
-        }
-        groups
     }
 
     /// One grid with more and more care; the failure of the last.
@@ -394,13 +353,18 @@ impl<'a> IntegerProblem<'a> {
             if reached == 1.0 {
                 break (held, y);
             }
-            let walls = self.walls(&rounded.x, &y, h)?;
+            let z = self.problem.space().expand(&y);
+            let walls = self.walls(&z)?;
             if rounds == MOST_ROUNDS || walls.is_empty() {
                 return Err(IntegerFailure::Blocked { reached });
             }
             rounds += 1;
             stats.walls += walls.len();
-            walls.into_iter().for_each(|(ways, room)| rounding.add(ways, room));
+            let here = self.space.read(&z).0;
+            for wall in &walls {
+                let (ways, room) = wall.beyond(&rounded.x, &here, h);
+                rounding.add(ways, room);
+            }
         };
         let clock = Instant::now();
         let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
@@ -443,32 +407,12 @@ impl<'a> IntegerProblem<'a> {
         Ok(rounding)
     }
 
-    /// What keeps the rounding from integers that block the way as these do, given the layout where they do.
-    /// Nothing where edges are aligned: isolines would take part in it.
-    fn walls(
-        &self,
-        x: &[i64],
-        y: &[f64],
-        h: f64,
-    ) -> Result<Vec<(Vec<Constraint>, Room)>, Overflow> {
-        if !self.aligned.is_empty() {
-            return Ok(Vec::new());
+    /// The walls in a layout that could not go further. None where edges are aligned: isolines would take part.
+    fn walls(&self, z: &[Complex64]) -> Result<Vec<Wall>, Overflow> {
+        match self.aligned.is_empty() {
+            true => walls(&self.scene(z), self.problem.triangles()),
+            false => Ok(Vec::new()),
         }
-        let z = self.problem.space().expand(y);
-        let here = self.space.read(&z).0;
-        let room = |wall: Wall| {
-            let ways: Vec<Constraint> =
-                wall.ways.iter().map(|way| Constraint::new(way, &here, h)).collect();
-            let along = |displacement: &dyn Fn(&Constraint) -> [f64; 2]| -> f64 {
-                let pairs = ways.iter().map(displacement).zip(&wall.pushes);
-                pairs.map(|([u, v], push)| push[0] * u + push[1] * v).sum()
-            };
-            let (at_x, at_here) = (along(&|way| way.at(x)), along(&|way| way.start));
-            let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
-            (ways, Room::Triangles { pushes: wall.pushes, more_than })
-        };
-        let found = walls(&self.scene(&z), self.problem.triangles())?;
-        Ok(found.into_iter().map(room).collect())
     }
 
     /// A layout of the component.
@@ -512,27 +456,6 @@ impl<'a> IntegerProblem<'a> {
         let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
         Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
     }
-}
-
-/// What the rounding keeps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Care {
-    /// Lines between grid points and the faces that they span. The quads may be no manifold.
-    Cones,
-    /// Also no two edges of quads between the same two points.
-    Faces,
-    /// Shapes around vertices as well: more than is needed, but the way is blocked less often.
-    Vertices,
-}
-
-/// A grid to try.
-struct Grid {
-    nudges: usize,
-    refinements: usize,
-    /// Area of its cells against that of those asked for.
-    share: f64,
-    /// How to round to it, one after the other.
-    cares: &'static [Care],
 }
 
 /// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.

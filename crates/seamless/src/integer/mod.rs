@@ -18,6 +18,7 @@ mod component;
 pub mod conditional;
 pub mod connections;
 pub mod gauss;
+mod grids;
 pub mod isolines;
 pub mod lattice;
 pub mod moves;

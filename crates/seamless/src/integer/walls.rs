@@ -2,6 +2,7 @@
 
 use super::conditional::Row;
 use super::gauss::Overflow;
+use super::rounding::{Constraint, Room};
 use super::scene::{Connection, Scene, Sight};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
 use crate::layout::triangle::Triangle;
@@ -12,6 +13,9 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Triangles that push with less than this share of the strongest push are not what blocks the way.
 const WEAK: f64 = 0.02;
+
+/// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
+const LEAST_PUSH: f64 = 0.25;
 
 /// A cluster of collapsing triangles as the grid points around it feel it.
 ///
@@ -24,6 +28,22 @@ pub struct Wall {
     pub ways: Vec<Connection>,
     /// What pushes each of these, the strongest push one.
     pub pushes: Vec<[f64; 2]>,
+}
+
+impl Wall {
+    /// What keeps a rounding beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
+    /// layout at the wall and grid size `h`, both in the layout's units.
+    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
+        let ways: Vec<Constraint> =
+            self.ways.iter().map(|way| Constraint::new(way, here, h)).collect();
+        let along = |displacement: &dyn Fn(&Constraint) -> [f64; 2]| -> f64 {
+            let pairs = ways.iter().map(displacement).zip(&self.pushes);
+            pairs.map(|([u, v], push)| push[0] * u + push[1] * v).sum()
+        };
+        let (at_x, at_here) = (along(&|way| way.at(x)), along(&|way| way.start));
+        let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
+        (ways, Room::Triangles { pushes: self.pushes.clone(), more_than })
+    }
 }
 
 /// A face of a cluster and the half-edges crossed on the way there from the first one.
@@ -134,55 +154,100 @@ fn wall(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cut::connect_cones;
+    use crate::cut::{Cut, connect_cones};
     use crate::integer::conditional::apply;
+    use crate::integer::rounding::Span;
     use crate::integer::space::{GridNeeds, IntegerSpace};
     use crate::layout::triangle::triangles;
     use seamstress_surface::{HalfedgeData, Metric, VertexData};
 
-    /// Four vertices, the last in the middle of the others, which are grid points, in a layout `height` times
-    /// as high as the surface; the pushes on the second and on the third against the first.
-    fn pushes_in(height: f64) -> Vec<[f64; 2]> {
-        let positions = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [5.0 / 3.0, 1.0, 0.0]];
-        let mesh = TriMesh::from_faces(4, &[[0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
-        let metric = Metric::from_positions(&mesh, &positions);
-        let no_cones = VertexData::filled(4, false);
-        let (cut, _) = connect_cones(&mesh, &metric, &no_cones).unwrap();
-        let matching = HalfedgeData::filled(mesh.n_halfedges(), 0);
-        let mut needs = GridNeeds::cones(no_cones);
-        mesh.vertices().take(3).for_each(|v| needs.is_point[v] = true);
-        let space = IntegerSpace::new(&mesh, &cut, &matching, &needs).unwrap();
-        let mut z = vec![Complex64::ZERO; cut.n_wedges];
-        for h in mesh.halfedges() {
-            let [x, y, _] = positions[mesh.origin(h).at()];
-            z[cut.wedge[h] as usize] = Complex64::new(x, height * y);
+    /// Four vertices, the last in the middle of the others, which are grid points.
+    struct Case {
+        mesh: TriMesh,
+        metric: Metric,
+        cut: Cut,
+        matching: HalfedgeData<i32>,
+        needs: GridNeeds,
+        space: IntegerSpace,
+    }
+
+    const POSITIONS: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [5.0 / 3.0, 1.0, 0.0]];
+
+    impl Case {
+        fn new() -> Self {
+            let mesh = TriMesh::from_faces(4, &[[0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+            let metric = Metric::from_positions(&mesh, &POSITIONS);
+            let no_cones = VertexData::filled(4, false);
+            let (cut, _) = connect_cones(&mesh, &metric, &no_cones).unwrap();
+            let matching = HalfedgeData::filled(mesh.n_halfedges(), 0);
+            let mut needs = GridNeeds::cones(no_cones);
+            mesh.vertices().take(3).for_each(|v| needs.is_point[v] = true);
+            let space = IntegerSpace::new(&mesh, &cut, &matching, &needs).unwrap();
+            Self { mesh, metric, cut, matching, needs, space }
         }
-        let (cut, needs, space) = (&cut, &needs, &space);
-        let scene = Scene { mesh: &mesh, cut, matching: &matching, needs, space, z: &z };
-        let walls = walls(&scene, &triangles(&mesh, &metric, cut)).unwrap();
-        assert_eq!(walls.len(), 1);
-        let coordinates = space.read(&z).0;
-        let at = |way: &Connection| way.rows.each_ref().map(|row| apply(row, &coordinates));
-        let mut ways: Vec<([f64; 2], [f64; 2])> =
-            walls[0].ways.iter().map(at).zip(walls[0].pushes.iter().copied()).collect();
-        // The second is on the first one's line.
-        ways.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
-        let is_at = |way: [f64; 2], x: f64, y: f64| (way[0] - x).hypot(way[1] - y) < 1e-9;
-        assert!(is_at(ways[0].0, 4.0, 0.0) && is_at(ways[1].0, 1.0, 3.0 * height));
-        ways.into_iter().map(|(_, push)| push).collect()
+
+        /// The layout `height` times as high as the surface.
+        fn layout(&self, height: f64) -> Vec<Complex64> {
+            let mut z = vec![Complex64::ZERO; self.cut.n_wedges];
+            for h in self.mesh.halfedges() {
+                let [x, y, _] = POSITIONS[self.mesh.origin(h).at()];
+                z[self.cut.wedge[h] as usize] = Complex64::new(x, height * y);
+            }
+            z
+        }
+
+        /// The only wall of that layout.
+        fn wall(&self, height: f64) -> Wall {
+            let Self { mesh, metric, cut, matching, needs, space } = self;
+            let z = self.layout(height);
+            let scene = Scene { mesh, cut, matching, needs, space, z: &z };
+            let mut walls = walls(&scene, &triangles(mesh, metric, cut)).unwrap();
+            assert_eq!(walls.len(), 1);
+            walls.remove(0)
+        }
+
+        /// The pushes on the second and on the third vertex against the first.
+        fn pushes(&self, height: f64) -> Vec<[f64; 2]> {
+            let wall = self.wall(height);
+            let coordinates = self.space.read(&self.layout(height)).0;
+            let at = |way: &Connection| way.rows.each_ref().map(|row| apply(row, &coordinates));
+            let mut ways: Vec<_> = wall.ways.iter().map(at).zip(wall.pushes).collect();
+            // The second is on the first one's line.
+            ways.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
+            let is_at = |way: [f64; 2], x: f64, y: f64| (way[0] - x).hypot(way[1] - y) < 1e-9;
+            assert!(is_at(ways[0].0, 4.0, 0.0) && is_at(ways[1].0, 1.0, 3.0 * height));
+            ways.into_iter().map(|(_, push)| push).collect()
+        }
     }
 
     #[test]
     fn a_flat_triangle_of_grid_points_pushes_its_tip_away() {
         // Twice the area is 4 y_tip - 1 y_second for these abscissae: multipliers 4 and -1.
-        let [second, tip] = pushes_in(0.01)[..] else { panic!() };
-        let off = |push: [f64; 2], y: f64| (push[0]).hypot(push[1] - y);
+        let [second, tip] = Case::new().pushes(0.01)[..] else { panic!() };
+        let off = |push: [f64; 2], y: f64| push[0].hypot(push[1] - y);
         assert!(off(tip, 1.0) < 0.01 && off(second, -0.25) < 0.01, "{second:?} {tip:?}");
     }
 
     #[test]
     fn a_stretched_triangle_pulls() {
-        let [_, tip] = pushes_in(100.0)[..] else { panic!() };
+        let [_, tip] = Case::new().pushes(100.0)[..] else { panic!() };
         assert!(tip[1] < -0.9, "{tip:?}");
+    }
+
+    #[test]
+    fn the_rounding_has_to_end_beyond() {
+        let case = Case::new();
+        let integers = |height: f64| -> Vec<i64> {
+            let coordinates = case.space.read(&case.layout(height)).0;
+            coordinates.iter().map(|x| x.round() as i64).collect()
+        };
+        let here = case.space.read(&case.layout(0.01)).0;
+        let (ways, room) = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
+        let span = Span { ways: (0..ways.len()).collect(), room };
+        let has_room = |x: &[i64]| span.has_room(|k| ways[k].at(x));
+        assert!(!has_room(&integers(0.0)) && !has_room(&integers(-1.0)));
+        // the tip a cell higher, then three
+        assert!(has_room(&integers(1.0 / 3.0)) && has_room(&integers(1.0)));
     }
 }
