@@ -32,8 +32,8 @@ pub fn seamless(
     }
     let start = Instant::now();
     let mut go_on = |_| ControlFlow::Continue(());
-    let area = Metric::from_positions(&mesh.connectivity, &mesh.positions).surface_area();
-    let cell = Some(GridSize::Quads(quads).cell(area));
+    let side = Metric::from_positions(&mesh.connectivity, &mesh.positions).side();
+    let cell = Some(GridSize::Quads(quads).cell(side));
     let options = MapOptions { cell, ..MapOptions::default() };
     let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
     let seconds = start.elapsed().as_secs_f64();

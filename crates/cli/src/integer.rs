@@ -174,8 +174,8 @@ pub(crate) fn make_seamless(
     worker: &mut Worker,
 ) -> Result<SeamlessStart, Failure> {
     let positions = &mesh.soup.positions;
-    let area = Metric::from_positions(connectivity, positions).surface_area();
-    let options = MapOptions { cell: Some(size.cell(area)), ..cones.options() };
+    let side = Metric::from_positions(connectivity, positions).side();
+    let options = MapOptions { cell: Some(size.cell(side)), ..cones.options() };
     let FeatureArgs { features: sources, align_boundary } = features;
     let asked = Features::resolve(sources, *align_boundary, mesh, connectivity)?;
     let mut observe = |progress| worker.observe(progress);

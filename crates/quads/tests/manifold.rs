@@ -12,8 +12,8 @@ use std::ops::ControlFlow;
 fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     let size = GridSize::Quads(quads);
-    let cell = size.cell(Metric::from_positions(&mesh, &soup.positions).surface_area());
-    let options = MapOptions { cell: Some(cell), ..MapOptions::default() };
+    let cell = Some(size.cell(Metric::from_positions(&mesh, &soup.positions).side()));
+    let options = MapOptions { cell, ..MapOptions::default() };
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap().map;
     let made = manifold_quads(&mesh, &soup.positions, size, |size| {

@@ -134,6 +134,17 @@ fn sizes_agree_with_each_other() {
 }
 
 #[test]
+fn units_do_not_matter() {
+    // The area of neither is a number.
+    let soup = testkit::bumpy(&testkit::icosphere(2), 0.05, 5);
+    let (_, solution) = integer(&soup, GridSize::Quads(300.0));
+    for scale in [(-650f64).exp2(), 650f64.exp2()] {
+        let (_, scaled) = integer(&testkit::scale(&soup, scale), GridSize::Quads(300.0));
+        assert_eq!(solution.map.corner_uvs(), scaled.map.corner_uvs());
+    }
+}
+
+#[test]
 fn greedy_rounding_is_refused_where_it_flips() {
     let soup = testkit::bumpy(&testkit::icosphere(2), 0.25, 2);
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();

@@ -129,9 +129,10 @@ impl Metric {
         self.area.iter().sum()
     }
 
-    /// Total area, in the unit of the positions squared.
-    pub fn surface_area(&self) -> f64 {
-        self.total_area() * self.unit * self.unit
+    /// Side of a square with the total area, in the unit of the positions: unlike the area itself it cannot
+    /// overflow.
+    pub fn side(&self) -> f64 {
+        self.total_area().sqrt() * self.unit
     }
 
     /// The smallest angle, radians, and the corner it is at.
@@ -208,7 +209,7 @@ mod tests {
         let metric = Metric::from_positions(&mesh, &positions);
         let mean = (4.0 + 2.0 * 2f64.sqrt()) / 6.0;
         assert!((metric.unit - mean).abs() < 1e-15);
-        assert!((metric.surface_area() - 1.0).abs() < 1e-14);
+        assert!((metric.side() - 1.0).abs() < 1e-14);
         assert!((metric.angle[Halfedge(0)] - PI / 4.0).abs() < 1e-14);
         assert!((metric.angle[Halfedge(1)] - PI / 2.0).abs() < 1e-14);
         let curvature = metric.curvature(&mesh);

@@ -224,11 +224,11 @@ impl<'a> IntegerProblem<'a> {
         })
     }
 
-    /// Area of the seamless map, mesh units.
-    pub(super) fn area(&self) -> f64 {
+    /// Side of a square with the area of the seamless map, mesh units.
+    pub(super) fn side(&self) -> f64 {
         let z = self.problem.space().expand(&self.y);
         let doubled = self.problem.triangles().iter().map(|t| t.doubled_area(&z));
-        0.5 * doubled.sum::<f64>() * self.unit * self.unit
+        (0.5 * doubled.sum::<f64>()).sqrt() * self.unit
     }
 
     /// The integer map for cells of a size in mesh units, or of the first other one that works, nearby or,

@@ -60,10 +60,10 @@ impl GridSize {
         }
     }
 
-    /// Edge length of a cell on a surface of an area, both in mesh units.
-    pub fn cell(self, area: f64) -> f64 {
+    /// Edge length of a cell on a surface with the area of a square of this side, both in mesh units.
+    pub fn cell(self, side: f64) -> f64 {
         match self {
-            Self::Quads(quads) => (area / quads).sqrt(),
+            Self::Quads(quads) => side / quads.sqrt(),
             Self::EdgeLength(length) => length,
             Self::Scale(scale) => 1.0 / scale,
         }

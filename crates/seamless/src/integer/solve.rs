@@ -206,8 +206,8 @@ impl<'p> Run<'p, '_, '_> {
 
     /// Meets the size asked for; the cell size, the components and the number of cell sizes tried.
     fn solve(&mut self, size: GridSize) -> Result<(f64, Vec<Placed>, usize), IntegerError> {
-        let area: f64 = self.problems.iter().map(IntegerProblem::area).sum();
-        let mut cell = size.cell(area);
+        let side = self.problems.iter().map(IntegerProblem::side).fold(0.0, f64::hypot);
+        let mut cell = size.cell(side);
         let GridSize::Quads(quads) = size else {
             return Ok((cell, self.place_all(cell, true)?, 1));
         };

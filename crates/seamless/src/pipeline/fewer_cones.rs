@@ -38,7 +38,7 @@ impl Terms {
     /// Those of a component; none if its cones stay as they were rounded.
     pub(super) fn new(options: &MapOptions, metric: &Metric, is_aligned: bool) -> Option<Self> {
         let price = options.cone_price.unwrap_or_else(|| match options.cell {
-            Some(cell) => QUAD_PRICE.max(QUAD_CELLS * cell * cell / metric.surface_area()),
+            Some(cell) => QUAD_PRICE.max(QUAD_CELLS * (cell / metric.side()).powi(2)),
             None => MAP_PRICE,
         });
         let (bounds, effort) = match options.cell {
