@@ -145,6 +145,20 @@ fn units_do_not_matter() {
 }
 
 #[test]
+fn a_triangle_without_area_is_no_obstacle() {
+    // A triangle of area 2 with a fourth vertex on one of its sides.
+    let soup = TriangleSoup {
+        positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [1.0, 2.0, 0.0], [1.0, 0.0, 0.0]],
+        faces: vec![[0, 1, 3], [3, 1, 2], [0, 3, 2]],
+    };
+    for size in [GridSize::Quads(800.0), GridSize::EdgeLength(0.05)] {
+        let (_, solution) = integer(&soup, size);
+        check_exactly(&soup, solution.map.corner_uvs());
+        assert!((solution.quads() / 800.0 - 1.0).abs() < 0.02, "{}", solution.quads());
+    }
+}
+
+#[test]
 fn greedy_rounding_is_refused_where_it_flips() {
     let soup = testkit::bumpy(&testkit::icosphere(2), 0.25, 2);
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();

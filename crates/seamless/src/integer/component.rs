@@ -224,6 +224,17 @@ impl<'a> IntegerProblem<'a> {
         })
     }
 
+    /// The problem with the size of the map itself, where the metric's is of no use; UVs in mesh units.
+    pub(super) fn as_large_as(mut self, map: &SeamlessMap) -> Self {
+        let doubled = |uvs: &[[f64; 2]]| {
+            let [a, b, c] = [uvs[0], uvs[1], uvs[2]].map(|[u, v]| Complex64::new(u, v) / self.unit);
+            ((b - a).conj() * (c - a)).im
+        };
+        let area = 0.5 * map.corner_uvs().chunks_exact(3).map(doubled).sum::<f64>();
+        self.unit *= area.sqrt() * self.unit / self.side();
+        self
+    }
+
     /// Side of a square with the area of the seamless map, mesh units.
     pub(super) fn side(&self) -> f64 {
         let z = self.problem.space().expand(&self.y);

@@ -20,6 +20,9 @@ const FAR_OFF: f64 = 0.05;
 /// whatever is asked for.
 const LARGEST_CHANGE: f64 = 1.2;
 
+/// Exponent of the metric for meshes with triangles that have no area.
+const SNOWFLAKE: f64 = 0.5;
+
 /// A certified integer map and how it was made.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -196,11 +199,17 @@ impl<'p> Run<'p, '_, '_> {
         let metric = Metric::from_positions(&piece.mesh, &positions);
         let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
         let aligned = in_component(aligned, piece);
-        let problem = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
-            .map_err(IntegerFailure::Uncertified)
-            .and_then(|map| IntegerProblem::new(&piece.mesh, &metric, &map, &aligned, options))
-            .map_err(|cause| self.error(k, cause))?;
-        self.problems.push(problem);
+        let map = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
+            .map_err(|cause| self.error(k, cause.into()))?;
+        let read =
+            |metric: &Metric| IntegerProblem::new(&piece.mesh, metric, &map, &aligned, options);
+        let problem = match read(&metric) {
+            // Triangles too thin for arithmetic open up in a snowflake metric.
+            Err(IntegerFailure::Unreadable) => read(&metric.snowflake(&piece.mesh, SNOWFLAKE))
+                .map(|problem| problem.as_large_as(&map)),
+            problem => problem,
+        };
+        self.problems.push(problem.map_err(|cause| self.error(k, cause))?);
         Ok(())
     }
 
