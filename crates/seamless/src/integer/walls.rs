@@ -13,7 +13,8 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Triangles that push with less than this share of the strongest push are not what blocks the way.
 const WEAK: f64 = 0.02;
-
+/// Clusters of more faces are no walls: there the whole layout is in tension.
+const MOST_FACES: usize = 5000;
 /// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
 const LEAST_PUSH: f64 = 0.25;
 
@@ -64,7 +65,9 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
         let has_point = scene.mesh.face_vertices(f).iter().any(|&v| scene.needs.is_point[v]);
         if is_open[f] && has_point {
             let cluster = cluster(scene, f, &mut is_open);
-            found.extend(wall(scene, &cluster, &pushes)?);
+            if cluster.len() <= MOST_FACES {
+                found.extend(wall(scene, &cluster, &pushes)?);
+            }
         }
     }
     Ok(found)
@@ -77,12 +80,12 @@ fn pushes(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
         .map(|g| -t.weight * Complex64::new(d[0] * g[0] + d[1] * g[1], d[2] * g[0] + d[3] * g[1]))
 }
 
-/// Open faces that hang together at ordinary vertices; they are closed.
+/// Open faces that hang together at ordinary vertices, until there are too many; they are closed.
 fn cluster(scene: &Scene<'_>, first: Face, is_open: &mut FaceData<bool>) -> Vec<Reached> {
     is_open[first] = false;
     let mut cluster = vec![(first, Vec::new())];
     let mut queue = VecDeque::from([0]);
-    while let Some(k) = queue.pop_front() {
+    while let Some(k) = queue.pop_front().filter(|_| cluster.len() <= MOST_FACES) {
         let (face, crossed): Reached = cluster[k].clone();
         for corner in face.halfedges() {
             if scene.needs.is_point[scene.mesh.origin(corner)] {
@@ -145,6 +148,7 @@ fn wall(
     ways.retain(|rows, _| rows.iter().any(|row| !row.is_empty()));
     let strongest = ways.values().map(|push| push.norm()).fold(0.0, f64::max);
     let scaled = |(rows, push): ([Row; 2], Complex64)| {
+        // Of no length: the rounding takes the shortest first.
         (Connection { length: 0.0, rows, least: 1 }, [push.re / strongest, push.im / strongest])
     };
     let (ways, pushes) = ways.into_iter().map(scaled).unzip();
