@@ -225,7 +225,7 @@ impl<'a> IntegerProblem<'a> {
     }
 
     /// The problem with the size of the map itself, where the metric's is of no use; UVs in mesh units.
-    pub(super) fn as_large_as(mut self, map: &SeamlessMap) -> Self {
+    pub(super) fn with_size_of(mut self, map: &SeamlessMap) -> Self {
         let doubled = |uvs: &[[f64; 2]]| {
             let [a, b, c] = [uvs[0], uvs[1], uvs[2]].map(|[u, v]| Complex64::new(u, v) / self.unit);
             ((b - a).conj() * (c - a)).im

@@ -206,7 +206,7 @@ impl<'p> Run<'p, '_, '_> {
         let problem = match read(&metric) {
             // Triangles too thin for arithmetic open up in a snowflake metric.
             Err(IntegerFailure::Unreadable) => read(&metric.snowflake(&piece.mesh, SNOWFLAKE))
-                .map(|problem| problem.as_large_as(&map)),
+                .map(|problem| problem.with_size_of(&map)),
             problem => problem,
         };
         self.problems.push(problem.map_err(|cause| self.error(k, cause))?);
