@@ -7,11 +7,10 @@ use super::gauss::{Gauss, Overflow};
 use super::grids::{Care, grids};
 use super::isolines::turning_points;
 use super::moves::Moves;
+use super::outcome::{IntegerFailure, IntegerStats};
 use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{
-    Constraint, HOPELESS, Room, RoundingProblem, round_constrained, round_greedily,
-};
+use super::rounding::{Constraint, Room, RoundingProblem, round_constrained, round_greedily};
 use super::scene::{Connection, Scene, distinct};
 use super::shapes::{Shape, shapes};
 use super::snap::snap;
@@ -24,10 +23,9 @@ use crate::layout::exact::ExactLayout;
 use crate::layout::newton::{NewtonOptions, minimize};
 use crate::layout::problem::LayoutProblem;
 use crate::layout::triangle::triangles;
-use crate::map::{SeamlessMap, Violations};
-use crate::progress::{Cancelled, Watch};
+use crate::map::SeamlessMap;
+use crate::progress::Watch;
 use num_complex::Complex64;
-use seamstress_numerics::NotPositiveDefinite;
 use seamstress_surface::features::EdgeSet;
 use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use std::time::Instant;
@@ -38,87 +36,6 @@ const CONSTRAINED_LENGTH: f64 = 2.5;
 const MOST_ROUNDS: usize = 9;
 const SHIFT: f64 = 1e-8;
 const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
-
-/// Why a component has no integer map.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum IntegerFailure {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The relations of the seams do not fit into 64-bit integers.
-    #[error(transparent)]
-    Overflow(#[from] Overflow),
-    /// A linear system could not be solved.
-    #[error(transparent)]
-    Numeric(#[from] NotPositiveDefinite),
-    /// The given map flips when its seams are closed exactly.
-    #[error("the map has triangles too thin to close its seams exactly")]
-    Unreadable,
-    /// Straight connections of cones, or ways between isolines, would vanish.
-    #[error("{violated} straight lines between cones or isolines would vanish or turn around")]
-    Conflict {
-        /// How many.
-        violated: usize,
-    },
-    /// Triangles would collapse on the way to the integers.
-    #[error("the way to the integers is blocked at {reached:.2} of it, where triangles collapse")]
-    Blocked {
-        /// Share of the way that could be gone.
-        reached: f64,
-    },
-    /// The result fails its certificate.
-    #[error(transparent)]
-    Uncertified(#[from] Violations),
-}
-
-impl IntegerFailure {
-    /// Whether a finer grid may help.
-    fn asks_for_finer_grid(&self) -> bool {
-        matches!(self, Self::Conflict { .. } | Self::Blocked { .. } | Self::Uncertified(_))
-    }
-
-    /// Whether grids nearby will hardly do either.
-    fn is_hopeless(&self) -> bool {
-        matches!(self, Self::Conflict { violated } if *violated > HOPELESS)
-    }
-}
-
-/// How the integer map of one component was made.
-#[derive(Debug, Clone, Default, serde::Serialize)]
-#[non_exhaustive]
-pub struct IntegerStats {
-    /// Faces.
-    pub faces: usize,
-    /// Real integer unknowns.
-    pub integers: usize,
-    /// Straight connections of cones, and ways to isolines, that were constrained.
-    pub constraints: usize,
-    /// Walls that the way ran into and that were rounded around, on the last grid.
-    pub walls: usize,
-    /// Times the rounding started over with other priorities.
-    pub restarts: usize,
-    /// Moves that carried the layout to the integers.
-    pub moves: usize,
-    /// Newton iterations after that.
-    pub polish: usize,
-    /// Other grids tried whose number of quads is within 2 % of that of the first.
-    pub nudges: usize,
-    /// Times the grid was made finer, each by 1.1 in the number of quads.
-    pub refinements: usize,
-    /// Why the first grid would not do, if so.
-    pub refined_because: Option<String>,
-    /// Area in the plane, grid units.
-    pub quads: f64,
-    /// Seconds for reading the map and reducing the energy to the integers.
-    pub seconds_reduction: f64,
-    /// Seconds for rounding, over all grids tried.
-    pub seconds_rounding: f64,
-    /// Seconds for the way to the integers, over all grids tried.
-    pub seconds_moving: f64,
-    /// Seconds for the polish.
-    pub seconds_polish: f64,
-}
 
 /// Corner UVs in grid units, and how they were made.
 #[derive(Debug, Clone)]

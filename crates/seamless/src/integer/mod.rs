@@ -17,11 +17,13 @@ mod certificate;
 mod component;
 pub mod conditional;
 pub mod connections;
+mod fixing;
 pub mod gauss;
 mod grids;
 pub mod isolines;
 pub mod lattice;
 pub mod moves;
+mod outcome;
 pub mod rays;
 pub mod reduced;
 pub mod rounding;
@@ -37,7 +39,7 @@ pub mod walls;
 use crate::map::Tolerance;
 
 pub use certificate::{IntegerCertificate, IntegerMap};
-pub use component::{IntegerFailure, IntegerStats};
+pub use outcome::{IntegerFailure, IntegerStats};
 pub use solve::{IntegerError, IntegerSolution, to_aligned_integer_map, to_integer_map};
 
 /// How fine the grid is to be.

@@ -1,12 +1,12 @@
 //! Choosing the integers: a closest vector problem in which no connection of cones may collapse.
 
-use super::conditional::{Conditional, Effect, Row, apply, energy};
+use super::conditional::{Conditional, Row, apply, energy};
+use super::fixing::Fixing;
 use super::moves::Moves;
 use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
 use super::shapes::has_room;
-use rayon::prelude::*;
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
@@ -114,11 +114,7 @@ impl Span {
     pub fn has_room(&self, displacement: impl Fn(usize) -> [f64; 2]) -> bool {
         match &self.room {
             Room::Triangles { pushes, more_than } => {
-                let along = |(&i, [a, b]): (&usize, &[f64; 2])| {
-                    let [u, v] = displacement(i);
-                    a * u + b * v
-                };
-                self.ways.iter().zip(pushes).map(along).sum::<f64>() > *more_than
+                along(pushes, self.ways.iter().map(|&i| displacement(i))) > *more_than
             }
             Room::Vertex { sides } => {
                 if let (&[i, j], 3) = (self.ways.as_slice(), sides.len()) {
@@ -131,6 +127,11 @@ impl Span {
             }
         }
     }
+}
+
+/// How far displacements are along pushes, in all.
+pub(super) fn along(pushes: &[[f64; 2]], displacements: impl Iterator<Item = [f64; 2]>) -> f64 {
+    displacements.zip(pushes).map(|([u, v], [a, b])| a * u + b * v).sum()
 }
 
 /// Twice the area of a triangle of grid points is an integer; a positive one is above this.
@@ -155,16 +156,6 @@ const MOST_RESTARTS: usize = 5;
 pub(super) const HOPELESS: usize = 16;
 /// How much a restart moves a connection forward, grid units of length.
 const PRIORITY: f64 = 10.0;
-/// Values tried for a connection, the cheapest first.
-const TRIED: usize = 8;
-/// Values looked at are this many steps around the nearest.
-const REACH: i64 = 2;
-/// A determined value this close to an integer is that integer.
-const SAME: f64 = 1e-5;
-/// Connections per parallel task.
-const CHUNK: usize = 512;
-/// A row whose variance is below this share of the mean is determined.
-const DETERMINED: f64 = 1e-9;
 
 /// Rounds one coordinate after the other, the nearest to an integer first, with the others following
 /// (Bommes et al. 2009). Pays no heed to the constraints.
@@ -243,209 +234,7 @@ fn fix_connections(
             conflicts.push(i);
         }
     }
-    (fixing.now, conflicts)
-}
-
-/// Connections being fixed, with the mean and the variance of each under the conditions so far.
-struct Fixing<'a> {
-    constraints: &'a [Constraint],
-    rows: FlatRows,
-    shapes: &'a [Span],
-    /// The shapes that each constraint takes part in.
-    shapes_of: Vec<Vec<usize>>,
-    now: Conditional,
-    means: Vec<[f64; 2]>,
-    variances: Vec<f64>,
-    /// Variance below which a value is determined.
-    determined: f64,
-}
-
-/// The rows of all constraints in one piece, since each fixing reads them all.
-struct FlatRows {
-    entries: Vec<(u32, f64)>,
-    /// Where the first row of each constraint begins, and its second.
-    starts: Vec<[usize; 2]>,
-}
-
-impl FlatRows {
-    fn new(constraints: &[Constraint]) -> Self {
-        let mut rows = Self { entries: Vec::new(), starts: Vec::new() };
-        for constraint in constraints {
-            let starts = constraint.rows.each_ref().map(|row| {
-                let start = rows.entries.len();
-                rows.entries.extend(row.iter().map(|&(k, c)| (k as u32, c as f64)));
-                start
-            });
-            rows.starts.push(starts);
-        }
-        rows.starts.push([rows.entries.len(); 2]);
-        rows
-    }
-
-    /// Both rows of a constraint times a vector.
-    fn apply(&self, i: usize, x: &[f64]) -> [f64; 2] {
-        let ([first, second], [end, _]) = (self.starts[i], self.starts[i + 1]);
-        [first..second, second..end]
-            .map(|range| self.entries[range].iter().map(|&(k, c)| c * x[k as usize]).sum())
-    }
-}
-
-/// One of the two rows of a connection that is about to be fixed.
-struct Part {
-    effect: Effect,
-    /// Covariance with both rows of every connection, given the part before.
-    coupling: Vec<[f64; 2]>,
-    variance: f64,
-}
-
-impl Part {
-    /// How the value of a connection moves when this part is raised by one.
-    fn gain(&self, j: usize) -> [f64; 2] {
-        match self.effect {
-            Effect::Free { .. } => self.coupling[j].map(|c| c / self.variance),
-            _ => [0.0; 2],
-        }
-    }
-
-    /// By how much fixing this part lowers the variance of a connection.
-    fn settles(&self, j: usize) -> f64 {
-        let [gain, c] = [self.gain(j), self.coupling[j]];
-        gain[0] * c[0] + gain[1] * c[1]
-    }
-}
-
-impl<'a> Fixing<'a> {
-    fn new(problem: &'a RoundingProblem, start: Conditional) -> Self {
-        let constraints = &problem.constraints;
-        let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
-        let variance =
-            |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
-        Self {
-            constraints,
-            rows: FlatRows::new(constraints),
-            shapes: &problem.shapes,
-            shapes_of: problem.shapes_of(),
-            means: constraints.iter().map(mean).collect(),
-            variances: constraints.iter().map(variance).collect(),
-            determined: DETERMINED * start.mean_variance(),
-            now: start,
-        }
-    }
-
-    fn length(&self, i: usize) -> f64 {
-        let [u, v] = self.means[i];
-        u.hypot(v).min(self.constraints[i].length)
-    }
-
-    fn is_open(&self, i: usize) -> bool {
-        self.variances[i] > self.determined
-    }
-
-    /// Fixes a connection; false, and nothing changed, if no value will do.
-    fn fix(&mut self, i: usize) -> bool {
-        let parts = self.parts(i);
-        if parts.iter().any(|part| matches!(part.effect, Effect::NoUnit)) {
-            return false;
-        }
-        // Which connections get determined does not depend on the value.
-        let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
-        let is_determined: Vec<bool> =
-            (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
-        // The shapes that get determined by it.
-        let is_settled = |k: &usize| self.shapes[*k].ways.iter().all(|&j| is_determined[j]);
-        let mut settled: Vec<usize> = (0..self.constraints.len())
-            .filter(|&j| is_determined[j] && self.variances[j] > self.determined)
-            .flat_map(|j| self.shapes_of[j].iter().copied())
-            .filter(is_settled)
-            .collect();
-        settled.sort_unstable();
-        settled.dedup();
-        let is_possible = |value: &[i64; 2]| {
-            let errors = self.errors(i, &parts, *value);
-            let fits = |part: usize| {
-                matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
-            };
-            let at = |j: usize| self.moved(j, &parts, errors);
-            let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
-            let leaves_room = |&k: &usize| self.shapes[k].has_room(at);
-            fits(0)
-                && fits(1)
-                && (0..self.constraints.len()).all(allows)
-                && settled.iter().all(leaves_room)
-        };
-        let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
-            return false;
-        };
-        let errors = self.errors(i, &parts, value);
-        for j in 0..self.constraints.len() {
-            self.means[j] = self.moved(j, &parts, errors);
-            self.variances[j] -= parts[0].settles(j) + parts[1].settles(j);
-        }
-        for ((part, row), value) in parts.into_iter().zip(&self.constraints[i].rows).zip(value) {
-            if let Effect::Free { reduced, pivot } = part.effect {
-                self.now.fix(row, value, reduced, pivot);
-            }
-        }
-        true
-    }
-
-    /// What fixing the two rows of a connection, one after the other, would do.
-    fn parts(&self, i: usize) -> [Part; 2] {
-        let rows = &self.constraints[i].rows;
-        let spread = self.now.spread(&rows[0]);
-        let effect = self.now.effect(&rows[0], None);
-        let first = self.part(&rows[0], effect, &spread);
-        let mut spread_after = self.now.spread(&rows[1]);
-        let effect = self.now.effect(&rows[1], Some(&first.effect));
-        if matches!(first.effect, Effect::Free { .. }) {
-            let gain = apply(&rows[1], &spread) / first.variance;
-            spread_after.iter_mut().zip(&spread).for_each(|(s, before)| *s -= gain * before);
-        }
-        let second = self.part(&rows[1], effect, &spread_after);
-        [first, second]
-    }
-
-    fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
-        // What is determined has no covariance with anything.
-        let coupling = |(i, &variance): (usize, &f64)| match variance > self.determined {
-            true => self.rows.apply(i, spread),
-            false => [0.0; 2],
-        };
-        let coupling =
-            self.variances.par_iter().enumerate().with_min_len(CHUNK).map(coupling).collect();
-        Part { effect, coupling, variance: apply(row, spread) }
-    }
-
-    /// How far a value is from the mean of the first row, and then from that of the second.
-    fn errors(&self, i: usize, parts: &[Part; 2], value: [i64; 2]) -> [f64; 2] {
-        let first = value[0] as f64 - self.means[i][0];
-        let second = value[1] as f64 - self.means[i][1] - parts[0].gain(i)[1] * first;
-        [first, second]
-    }
-
-    /// The mean of a connection after fixing.
-    fn moved(&self, j: usize, parts: &[Part; 2], errors: [f64; 2]) -> [f64; 2] {
-        let [a, b] = [parts[0].gain(j), parts[1].gain(j)];
-        [0, 1].map(|k| self.means[j][k] + a[k] * errors[0] + b[k] * errors[1])
-    }
-
-    /// Allowed values of a connection near the one it has, by the energy they cost.
-    fn candidates(&self, i: usize, parts: &[Part; 2]) -> Vec<[i64; 2]> {
-        let constraint = &self.constraints[i];
-        let [u, v] = self.means[i].map(|x| x.round() as i64);
-        let cost = |value: [i64; 2]| {
-            let errors = self.errors(i, parts, value);
-            let of = |k: usize| errors[k] * errors[k] / parts[k].variance.max(self.determined);
-            of(0) + of(1)
-        };
-        let mut values: Vec<[i64; 2]> = (-REACH..=REACH)
-            .flat_map(|x| (-REACH..=REACH).map(move |y| [u + x, v + y]))
-            .filter(|v| constraint.allows(v.map(|x| x as f64)))
-            .collect();
-        values.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)).then(a.cmp(&b)));
-        values.truncate(TRIED);
-        values
-    }
+    (fixing.into_conditional(), conflicts)
 }
 
 #[cfg(test)]

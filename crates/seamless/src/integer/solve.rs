@@ -1,7 +1,8 @@
 //! From a seamless map to an integer map: the grid, and all components on it.
 
 use super::certificate::IntegerMap;
-use super::component::{IntegerFailure, IntegerProblem, IntegerStats, Placed};
+use super::component::{IntegerProblem, Placed};
+use super::outcome::{IntegerFailure, IntegerStats};
 use super::{GridSize, IntegerOptions};
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use crate::pipeline::in_component;

@@ -2,10 +2,10 @@
 
 use super::conditional::Row;
 use super::gauss::Overflow;
-use super::rounding::{Constraint, Room};
+use super::rounding::{Constraint, Room, along};
 use super::scene::{Connection, Scene, Sight};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
-use crate::layout::triangle::Triangle;
+use crate::layout::triangle::{Triangle, at_corner};
 use crate::quarter::turn;
 use num_complex::Complex64;
 use seamstress_surface::{Face, FaceData, Halfedge, TriMesh};
@@ -37,11 +37,8 @@ impl Wall {
     pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
         let ways: Vec<Constraint> =
             self.ways.iter().map(|way| Constraint::new(way, here, h)).collect();
-        let along = |displacement: &dyn Fn(&Constraint) -> [f64; 2]| -> f64 {
-            let pairs = ways.iter().map(displacement).zip(&self.pushes);
-            pairs.map(|([u, v], push)| push[0] * u + push[1] * v).sum()
-        };
-        let (at_x, at_here) = (along(&|way| way.at(x)), along(&|way| way.start));
+        let at_x = along(&self.pushes, ways.iter().map(|way| way.at(x)));
+        let at_here = along(&self.pushes, ways.iter().map(|way| way.start));
         let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
         (ways, Room::Triangles { pushes: self.pushes.clone(), more_than })
     }
@@ -76,8 +73,10 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
 /// The forces of a triangle's energy on its corners.
 fn pushes(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
     let d = ProjectedHessian::new(&SymmetricDirichlet, &t.jacobian(z)).gradient;
-    t.gradients
-        .map(|g| -t.weight * Complex64::new(d[0] * g[0] + d[1] * g[1], d[2] * g[0] + d[3] * g[1]))
+    t.gradients.map(|g| {
+        let [x, y] = at_corner(d, g);
+        -t.weight * Complex64::new(x, y)
+    })
 }
 
 /// Open faces that hang together at ordinary vertices, until there are too many; they are closed.

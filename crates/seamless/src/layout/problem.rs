@@ -4,7 +4,7 @@ use super::anisotropy::Anisotropy;
 use super::energy::{Energy, ProjectedHessian};
 use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
-use super::triangle::{CHUNK, Triangle, sum_over, triangles};
+use super::triangle::{CHUNK, Triangle, at_corner, sum_over, triangles};
 use crate::cut::Cut;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -181,10 +181,9 @@ impl LayoutProblem {
     pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
         self.fill_triangles(|t, local, block| {
             let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
-            for (k, g) in t.gradients.iter().enumerate() {
-                let d = hessian.gradient;
-                local[2 * k] = t.weight * (d[0] * g[0] + d[1] * g[1]);
-                local[2 * k + 1] = t.weight * (d[2] * g[0] + d[3] * g[1]);
+            for (k, &g) in t.gradients.iter().enumerate() {
+                let [x, y] = at_corner(hessian.gradient, g);
+                (local[2 * k], local[2 * k + 1]) = (t.weight * x, t.weight * y);
             }
             block.fill(0.0);
             for (value, v) in hessian.eigenvalues.iter().zip(hessian.eigenvectors) {
@@ -193,9 +192,8 @@ impl LayoutProblem {
                     continue;
                 }
                 let mut q = [0.0; 6];
-                for (k, g) in t.gradients.iter().enumerate() {
-                    q[2 * k] = v[0] * g[0] + v[1] * g[1];
-                    q[2 * k + 1] = v[2] * g[0] + v[3] * g[1];
+                for (k, &g) in t.gradients.iter().enumerate() {
+                    [q[2 * k], q[2 * k + 1]] = at_corner(v, g);
                 }
                 let mut at = 0;
                 for i in 0..6 {

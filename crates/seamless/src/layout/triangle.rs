@@ -60,6 +60,14 @@ impl Triangle {
     }
 }
 
+/// A derivative by the entries `(j00, j01, j10, j11)` of the Jacobian as one by the position of the corner with this
+/// gradient.
+#[inline]
+pub fn at_corner(d: [f64; 4], gradient: [f64; 2]) -> [f64; 2] {
+    let [x, y] = gradient;
+    [d[0] * x + d[1] * y, d[2] * x + d[3] * y]
+}
+
 /// The triangles of a cut mesh with a metric.
 pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
     let total = metric.total_area();

@@ -2,7 +2,7 @@
 
 use super::program::{Matrix2, turned};
 use crate::layout::energy::Jacobian;
-use crate::layout::triangle::Triangle;
+use crate::layout::triangle::{Triangle, at_corner};
 use num_complex::Complex64;
 
 /// The Jacobian parts `(Re z, Im z, Re w, Im w)` that a program sees.
@@ -51,9 +51,8 @@ pub(super) fn vector_back(
     if let Some(left) = left {
         v = turn_back(left, &v);
     }
-    for (k, g) in triangle.gradients.iter().enumerate() {
-        local[2 * k] = v[0] * g[0] + v[1] * g[1];
-        local[2 * k + 1] = v[2] * g[0] + v[3] * g[1];
+    for (k, &g) in triangle.gradients.iter().enumerate() {
+        [local[2 * k], local[2 * k + 1]] = at_corner(v, g);
     }
 }
 
