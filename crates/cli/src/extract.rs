@@ -30,7 +30,7 @@ struct Product {
     mesh: LoadedMesh,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
-    shaped: Shaped,
+    shaped: Option<Shaped>,
     picture: Option<Vec<u8>>,
 }
 
@@ -67,13 +67,20 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
     }
     let connectivity = extraction.mesh.connectivity();
     if let (Err(faults), false) = (&connectivity, args.best_effort) {
-        return Err(Failure::NoManifold { file: args.map.clone(), faults: faults.clone() });
+        return Err(Failure::NoManifold {
+            file: args.map.clone(),
+            faults: faults.clone(),
+            advice: "`--best-effort` writes them all the same",
+        });
     }
     // What folds have left holes in is no surface to shape.
-    let mut shaped = Shaped::default();
+    let mut shaped = None;
     if connectivity.is_ok() && extraction.folds.is_none() {
         let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: &[] };
-        shaped = shaping.apply(&mesh, &source, &mut extraction)?;
+        shaped = Some(shaping.apply(&mesh, &source, &mut extraction)?);
+    }
+    if let (Some(shaped), false) = (&shaped, args.run.quiet) {
+        shaped.tell_faults();
     }
     let picture = args.picture.is_some().then(|| {
         let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
@@ -192,7 +199,7 @@ pub(crate) fn write_quads(
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
-    rows.extend(product.shaped.row());
+    rows.extend(product.shaped.iter().flat_map(Shaped::rows));
     let mut time = format!("{:.2} s", cost.wall_seconds);
     if let Some(cpu) = cost.cpu_seconds {
         time += &format!(", {cpu:.2} s of CPU");
@@ -290,6 +297,8 @@ fn report_json(args: &ExtractArgs, plan: &Plan, product: &Product, cost: Cost) -
             "folds": extraction.folds,
         },
         "quads": quads_json(extraction, &product.connectivity),
+        "mended": product.shaped.map(Shaped::mended),
+        "orientation": product.shaped.map(Shaped::orientation),
         "files": plan.targets,
         "cost": cost,
     })

@@ -79,10 +79,10 @@ pub(crate) enum Failure {
     #[error("{}: no quads were extracted: {text}", file.display())]
     NoQuads { file: PathBuf, text: String },
     #[error(
-        "{}: the quads are no manifold: {faults}. Nothing was written; `--best-effort` writes them all the same",
+        "{}: the quads are no manifold: {faults}. Nothing was written; {advice}",
         file.display()
     )]
-    NoManifold { file: PathBuf, faults: QuadFaults },
+    NoManifold { file: PathBuf, faults: QuadFaults, advice: &'static str },
     #[error(
         "{}: no certified integer map could be made: {cause}. Nothing was written; {advice}",
         file.display()

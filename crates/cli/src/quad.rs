@@ -19,6 +19,9 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
 
+/// What helps where there are no such quads.
+const ADVICE: &str = "try more quads, or fewer cones with a larger `--cone-bias`";
+
 /// The work done, and nothing written yet.
 struct Product {
     mesh: LoadedMesh,
@@ -66,8 +69,7 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
 
     let made = manifold_quads(&source, positions, size, |size| {
         let options = IntegerOptions { size, ..IntegerOptions::default() };
-        let advice = "try more quads, or fewer cones with a larger `--cone-bias`";
-        make_integer(&start, &options, advice, &mesh, &source, &mut worker)
+        make_integer(&start, &options, ADVICE, &mesh, &source, &mut worker)
     })
     .map_err(|error| no_quads(error, &mesh))?;
     worker.stop.lift_limit();
@@ -79,6 +81,9 @@ fn make(args: &QuadArgs, mut worker: Worker) -> Result<Product, Failure> {
     let features = start.features.as_ref().map_or(&[][..], |features| &features.kept);
     let shaping = Shaping { raw: args.raw, smooth: args.smooth, features };
     let shaped = shaping.apply(&mesh, &source, &mut extraction)?;
+    if !args.run.quiet {
+        shaped.tell_faults();
+    }
     let picture = args
         .picture
         .is_some()
@@ -102,7 +107,7 @@ fn no_quads(error: ManifoldError<Failure>, mesh: &LoadedMesh) -> Failure {
     let file = mesh.path.clone();
     match error {
         ManifoldError::Integer(failure) => failure,
-        ManifoldError::NoManifold(faults) => Failure::NoManifold { file, faults },
+        ManifoldError::NoManifold(faults) => Failure::NoManifold { file, faults, advice: ADVICE },
         other => Failure::NoQuads { file, text: other.to_string() },
     }
 }
@@ -154,7 +159,8 @@ fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> V
         "features": product.features.as_ref().map(AlignedFeatures::json),
         "manifold_refinements": product.refinements,
         "quads": quads_json(&product.extraction, &product.connectivity),
-        "mended": product.shaped.json(),
+        "mended": product.shaped.mended(),
+        "orientation": product.shaped.orientation(),
         "files": plan.targets,
         "cost": cost,
     })
@@ -176,7 +182,7 @@ fn summary_text(args: &QuadArgs, plan: &Plan, product: &Product, cost: &Cost) ->
     rows.extend(product.features.iter().flat_map(summary::aligned_rows));
     rows.extend(summary::distortion_rows(&integer.distortion));
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
-    rows.extend(product.shaped.row());
+    rows.extend(product.shaped.rows());
     rows.push(summary::cost_row(cost, std::iter::empty()));
     let names: Vec<String> =
         plan.targets.iter().rev().map(|target| target.path.display().to_string()).collect();

@@ -7,6 +7,7 @@ use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, VERSION};
+use crate::shape::orientation_row;
 use crate::summary;
 use crate::text::{self, counted, figure, row};
 use seamstress_io::{PolygonMesh, read_mesh};
@@ -135,7 +136,7 @@ fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>)
     }
     if let (Some(compared), Some(source)) = (compared, &args.source) {
         rows.extend(distance_rows(&compared.distance, source));
-        rows.push(row("orientation", &orientation_text(&compared.orientation)));
+        rows.push(orientation_row(&compared.orientation));
     }
     if let Some(path) = &args.picture {
         rows.push(row("written", &path.display().to_string()));
@@ -146,22 +147,6 @@ fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>)
         rows.extend(quality.measures.iter().map(|measured| summary_line(measured, |_, _| false)));
     }
     rows.join("\n")
-}
-
-fn orientation_text(orientation: &Orientation) -> String {
-    let corners = counted(orientation.turned_corners, "corner");
-    let bent = match orientation.bent {
-        0 => String::new(),
-        n => format!("; {} bent over a thin sheet or sharp edge", counted(n, "face")),
-    };
-    match orientation.inverted + orientation.crossed {
-        0 => format!("no face is inverted; {corners} turned against the source{bent}"),
-        _ => format!(
-            "{} inverted, {} crossed; {corners} turned against the source{bent}",
-            counted(orientation.inverted, "face"),
-            orientation.crossed
-        ),
-    }
 }
 
 fn topology_rows(args: &QualityArgs, quality: &QuadQuality) -> Vec<String> {

@@ -2,7 +2,8 @@
 
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
-use crate::text::{counted, row};
+use crate::text::{self, counted, row};
+use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     Extraction, MendOptions, QuadMesh, SmoothError, SmoothOptions, mend, smooth,
 };
@@ -19,12 +20,13 @@ pub(crate) struct Shaping<'a> {
     pub(crate) features: &'a [[u32; 2]],
 }
 
-/// What was done.
-#[derive(Debug, Clone, Copy, Default)]
+/// What was done, and what came of it.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Shaped {
     mended: usize,
     /// Mesh units.
     largest_move: f64,
+    orientation: Orientation,
 }
 
 impl Shaping<'_> {
@@ -37,19 +39,16 @@ impl Shaping<'_> {
     ) -> Result<Shaped, Failure> {
         let fixed = extraction.vertices_on(source, self.features);
         let surface = (mesh.soup.positions.as_slice(), mesh.soup.faces.as_slice());
-        let failure = |error: SmoothError| {
-            let file = mesh.path.clone();
-            match error {
-                SmoothError::NoManifold(faults) => Failure::NoManifold { file, faults },
-                error => Failure::NoQuads { file, text: error.to_string() },
-            }
+        let failure = |error: SmoothError| Failure::NoQuads {
+            file: mesh.path.clone(),
+            text: error.to_string(),
         };
-        let mut shaped = Shaped::default();
+        let (mut moved, mut largest_move) = (0, 0.0);
         let mut quads: Option<QuadMesh> = None;
         if !self.raw {
             let options = MendOptions { fixed: fixed.clone(), ..MendOptions::default() };
             let mended = mend(&extraction.mesh, surface, &options).map_err(failure)?;
-            shaped = Shaped { mended: mended.moved, largest_move: mended.largest_move };
+            (moved, largest_move) = (mended.moved, mended.largest_move);
             quads = Some(mended.mesh);
         }
         if self.smooth > 0 {
@@ -60,19 +59,79 @@ impl Shaping<'_> {
         if let Some(quads) = quads {
             extraction.mesh = quads;
         }
-        Ok(shaped)
+        let polygons = extraction.mesh.quads().iter().map(<[u32; 4]>::as_slice);
+        let orientation = Orientation::new(extraction.mesh.positions(), polygons, surface)
+            .map_err(|error| failure(SmoothError::BadSurface(error.to_string())))?;
+        Ok(Shaped { mended: moved, largest_move, orientation })
     }
 }
 
 impl Shaped {
-    /// A row of the summary, if there is something to say.
-    pub(crate) fn row(&self) -> Option<String> {
-        let vertices = counted(self.mended, "vertex");
-        let text = format!("{vertices} of badly shaped quads moved along the surface");
-        (self.mended > 0).then(|| row("mended", &text))
+    /// What is wrong with the quads, on standard error.
+    pub(crate) fn tell_faults(&self) {
+        if let Some(warning) = fault_warning(&self.orientation) {
+            text::tell(&warning);
+        }
     }
 
-    pub(crate) fn json(&self) -> Value {
+    /// Rows of the summary.
+    pub(crate) fn rows(&self) -> Vec<String> {
+        let vertices = counted(self.mended, "vertex");
+        let text = format!("{vertices} of badly shaped quads moved along the surface");
+        let mended = (self.mended > 0).then(|| row("mended", &text));
+        mended.into_iter().chain([orientation_row(&self.orientation)]).collect()
+    }
+
+    pub(crate) fn mended(self) -> Value {
         json!({ "moved": self.mended, "largest_move": self.largest_move })
+    }
+
+    pub(crate) fn orientation(self) -> Orientation {
+        self.orientation
+    }
+}
+
+/// How quads lie to their source.
+pub(crate) fn orientation_row(orientation: &Orientation) -> String {
+    let corners = counted(orientation.turned_corners, "corner");
+    let bent = match orientation.bent {
+        0 => String::new(),
+        n => format!("; {} bent over a thin sheet or sharp edge", counted(n, "face")),
+    };
+    let text = match orientation.inverted + orientation.crossed {
+        0 => format!("no face is inverted; {corners} turned against the source{bent}"),
+        _ => format!(
+            "{} inverted, {} crossed; {corners} turned against the source{bent}",
+            counted(orientation.inverted, "face"),
+            orientation.crossed
+        ),
+    };
+    row("orientation", &text)
+}
+
+fn fault_warning(orientation: &Orientation) -> Option<String> {
+    let faults = orientation.inverted + orientation.crossed;
+    let faces = counted(faults, "face");
+    (faults > 0).then(|| {
+        format!("warning: {faces} inverted or crossed, seen from the surface; try more quads")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_are_told() {
+        let mut orientation = Orientation::default();
+        (orientation.bent, orientation.turned_corners) = (1, 3);
+        assert_eq!(fault_warning(&orientation), None);
+        let text = orientation_row(&orientation);
+        assert!(text.ends_with(
+            "no face is inverted; 3 corners turned against the source; 1 face bent over a thin sheet or sharp edge"
+        ));
+        (orientation.inverted, orientation.crossed) = (2, 1);
+        assert!(fault_warning(&orientation).is_some_and(|text| text.contains("3 faces")));
+        assert!(orientation_row(&orientation).contains("2 faces inverted, 1 crossed"));
     }
 }

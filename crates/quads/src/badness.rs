@@ -18,6 +18,7 @@ pub(crate) fn of_corners(quad: [Point; 4]) -> [f64; 4] {
 }
 
 /// The worst corner.
+#[cfg(test)]
 pub(crate) fn of_quad(quad: [Point; 4]) -> f64 {
     of_corners(quad).into_iter().fold(0.0, f64::max)
 }

@@ -1,6 +1,7 @@
 //! Smoothing along a surface.
 
 use crate::badness;
+use crate::quality::Orientation;
 use crate::surface::Surface;
 use crate::vector::{Point, add};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
@@ -50,7 +51,7 @@ const STEP: f64 = 0.5;
 ///
 /// Each move ends at the point of the surface nearest to its target. Boundary and fixed vertices stay.
 /// A move is made only if it does not raise the worst of the quads around the vertex, judged by the
-/// cosines of their corners and by their orientation, so no quad is inverted that was not before.
+/// cosines of their corners and by their side of the surface, and if no more of them are inverted or crossed.
 ///
 /// Moves of a round are proposed from the same positions, then made one by one in the order of the
 /// vertices: the result does not depend on the number of threads.
@@ -74,15 +75,16 @@ pub fn smooth(
     let free: Vec<u32> = (0..mesh.positions().len() as u32)
         .filter(|&v| !is_fixed[v as usize] && connectivity.valence(v) > 0)
         .collect();
-    let mut state = State {
-        connectivity: &connectivity,
-        quads: mesh.quads(),
-        positions: mesh.positions().to_vec(),
-    };
+    let positions = mesh.positions().to_vec();
+    let normals = positions.par_iter().map(|&p| surface.normal(p)).collect();
+    let mut state = State { connectivity: &connectivity, quads: mesh.quads(), positions, normals };
     let mut refused = 0;
     for _ in 0..options.rounds {
-        let targets: Vec<Point> =
-            free.par_iter().map(|&v| surface.nearest(state.target(v))).collect();
+        let on_surface = |&v: &u32| {
+            let at = surface.nearest(state.target(v));
+            (at, surface.normal(at))
+        };
+        let targets: Vec<(Point, Point)> = free.par_iter().map(on_surface).collect();
         refused = free.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
     }
     let positions = state.positions;
@@ -93,6 +95,8 @@ struct State<'a> {
     connectivity: &'a QuadConnectivity,
     quads: &'a [[u32; 4]],
     positions: Vec<Point>,
+    /// Of the surface, where the vertices are.
+    normals: Vec<Point>,
 }
 
 impl State<'_> {
@@ -107,22 +111,34 @@ impl State<'_> {
         [0, 1, 2].map(|k| here[k] + STEP * (sum[k] / count - here[k]))
     }
 
-    /// Moves a vertex unless that makes the worst of its quads worse.
-    fn try_move(&mut self, v: u32, to: Point) -> bool {
-        let before = self.worst_around(v);
-        let from = std::mem::replace(&mut self.positions[v as usize], to);
-        let is_better = self.worst_around(v) <= before;
+    /// Moves a vertex, with the normal there, unless that makes its quads worse.
+    fn try_move(&mut self, v: u32, to: (Point, Point)) -> bool {
+        let (faults, worst) = self.around(v);
+        let from = self.put(v, to);
+        let (faults_there, worst_there) = self.around(v);
+        let is_better = faults_there <= faults && worst_there <= worst;
         if !is_better {
-            self.positions[v as usize] = from;
+            self.put(v, from);
         }
         is_better
     }
 
-    fn worst_around(&self, v: u32) -> f64 {
+    /// Puts a vertex somewhere; from where, is returned.
+    fn put(&mut self, v: u32, (at, normal): (Point, Point)) -> (Point, Point) {
+        let from = std::mem::replace(&mut self.positions[v as usize], at);
+        (from, std::mem::replace(&mut self.normals[v as usize], normal))
+    }
+
+    /// The number of inverted and crossed quads around a vertex, and the worst corner.
+    fn around(&self, v: u32) -> (usize, f64) {
         let quads = self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize]);
-        quads
-            .map(|quad| badness::of_quad(quad.map(|v| self.positions[v as usize])))
-            .fold(0.0, f64::max)
+        quads.fold((0, 0.0), |(faults, worst), quad| {
+            let points = quad.map(|v| self.positions[v as usize]);
+            let normals = quad.map(|v| self.normals[v as usize]);
+            let faults = faults + Orientation::of_polygon(&points, &normals).faults();
+            let bad = badness::on_surface(points, normals).into_iter().fold(worst, f64::max);
+            (faults, bad)
+        })
     }
 }
 
@@ -160,6 +176,32 @@ mod tests {
             quads.map(badness::of_quad).fold(0.0, f64::max)
         };
         assert!(worst(&smoothed.mesh) < worst(&before));
+    }
+
+    #[test]
+    fn no_more_quads_are_inverted_or_crossed_than_before() {
+        let grid = disk_grid(8, 8);
+        let surface = (grid.positions.as_slice(), grid.faces.as_slice());
+        let faults = |mesh: &QuadMesh| {
+            let polygons = mesh.quads().iter().map(<[u32; 4]>::as_slice);
+            let side = Orientation::new(mesh.positions(), polygons, surface).unwrap();
+            side.faults()
+        };
+        for seed in 0..20 {
+            let mut rng = Rng::new(seed);
+            let mut disturbed = grid.positions.clone();
+            for p in disturbed.iter_mut().filter(|p| p[0].abs() < 1.0 && p[1].abs() < 1.0) {
+                p[0] += rng.unit() - 0.5;
+                p[1] += rng.unit() - 0.5;
+            }
+            let mut mesh = QuadMesh::new(disturbed, quads_of(&grid.faces)).unwrap();
+            for _ in 0..20 {
+                let options = SmoothOptions { rounds: 1, ..SmoothOptions::default() };
+                let next = smooth(&mesh, surface, &options).unwrap().mesh;
+                assert!(faults(&next) <= faults(&mesh), "{seed}");
+                mesh = next;
+            }
+        }
     }
 
     #[test]

@@ -146,6 +146,8 @@ fn badly_shaped_quads_are_mended_unless_the_map_is_wanted_as_it_is() {
     assert_eq!(raw_report["mended"]["moved"], 0);
     assert_eq!(raw["topology"]["irregular"], mended["topology"]["irregular"]);
     assert_eq!(mended["orientation"]["inverted"], 0);
+    assert_eq!(report["orientation"], mended["orientation"]);
+    assert_eq!(raw_report["orientation"], raw["orientation"]);
     let range =
         |of: &Value| of["angles"]["max"].as_f64().unwrap() - of["angles"]["min"].as_f64().unwrap();
     match report["mended"]["moved"].as_u64() {

@@ -70,9 +70,9 @@ impl Orientation {
         }
     }
 
-    /// Whether any polygon is inverted or crossed, or would be.
-    pub(crate) fn is_faulty(self) -> bool {
-        self.inverted + self.crossed + self.bent > 0
+    /// Polygons that are inverted or crossed, or would be; one that is both counts twice.
+    pub(crate) fn faults(self) -> usize {
+        self.inverted + self.crossed + self.bent
     }
 }
 
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(of([up, up, up, down]), Orientation { turned_corners: 1, ..Default::default() });
         let bent = of([down, down, down, up]);
         assert_eq!((bent.inverted, bent.crossed, bent.bent), (0, 0, 1));
-        assert!(bent.is_faulty());
+        assert_eq!(bent.faults(), 1);
     }
 
     #[test]
