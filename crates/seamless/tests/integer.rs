@@ -109,8 +109,8 @@ fn shapes_of_every_kind_have_integer_maps() {
 #[test]
 fn integers_behind_a_wall_are_rounded_again() {
     // Far fewer cells than its cones have room for.
-    let soup = testkit::random_surface(4);
-    let (_, solution) = integer(&soup, GridSize::Quads(40.0));
+    let soup = testkit::random_surface(11);
+    let (_, solution) = integer(&soup, GridSize::Quads(80.0));
     check_exactly(&soup, solution.map.corner_uvs());
     assert!(solution.components[0].walls > 0, "the way is free from the start");
     assert_eq!(solution.refinements(), 0);

@@ -169,3 +169,15 @@ fn the_certificate_refuses_features_off_the_grid() {
     let made = to_aligned_integer_map(&mesh, &soup.positions, &map, &all, &options, &mut go_on);
     assert!(matches!(made, Err(IntegerError::Misaligned(_))), "{made:?}");
 }
+
+#[test]
+fn isolines_behind_a_wall_are_rounded_again() {
+    // Boundaries that leave less than a cell between them.
+    let torus = kit::with_boundaries(&kit::torus(16, 10, 2.0, 0.8), 6, 5);
+    let soup = kit::bumpy(&torus, 0.05, 3);
+    let (mesh, edges, solution) = integer(&soup, GridSize::Quads(40.0));
+    let component = &solution.components[0];
+    assert!(component.walls > 0, "the way is free from the start");
+    assert_eq!((component.nudges, component.refinements), (0, 0));
+    assert_eq!(faults(&mesh, &edges, solution.map.corner_uvs()), 0);
+}

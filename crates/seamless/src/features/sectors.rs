@@ -188,11 +188,13 @@ impl<'m> Sectors<'m> {
     #[must_use]
     pub fn bounds(&self, sector: Vertex) -> (i32, i32) {
         let (low, high) = bounds(&self.slit, sector);
-        if self.slit.is_boundary(sector) {
-            (low, high)
-        } else {
-            (low, high.min(self.largest_index))
-        }
+        let largest = match self.kind[sector] {
+            Kind::Interior => self.largest_index,
+            // Its angle is counted from half a turn.
+            Kind::OpenEnd => (self.largest_index - 2).max(low),
+            Kind::Free | Kind::Corner => high,
+        };
+        (low, high.min(largest))
     }
 
     /// Angle of a sector of given index, quarters.
@@ -242,4 +244,33 @@ fn base(slit: &TriMesh, sector: Vertex) -> f64 {
 fn bounds(slit: &TriMesh, sector: Vertex) -> (i32, i32) {
     let (low, high) = index_bounds(slit.valence(sector));
     if slit.is_boundary(sector) { (low - 2, high - 2) } else { (low, high) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use seamstress_testkit::disk_grid;
+
+    #[test]
+    fn the_largest_index_holds_at_open_ends_too() {
+        let grid = disk_grid(4, 4);
+        let mesh = TriMesh::from_faces(grid.positions.len(), &grid.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &grid.positions);
+        let inner =
+            |&h: &Halfedge| !mesh.is_boundary(mesh.origin(h)) && !mesh.is_boundary(mesh.tip(h));
+        let edge = mesh.halfedges().find(inner).unwrap();
+        let features = EdgeSet::new(&mesh, [edge]);
+        let sectors = Sectors::new(&mesh, &metric, &features);
+        let ends: Vec<Vertex> =
+            sectors.slit().vertices().filter(|&s| sectors.kind[s] == Kind::OpenEnd).collect();
+        assert_eq!(ends.len(), 2);
+        for largest in [3, 2, 1] {
+            let sectors = sectors.clone().with_largest_index(largest);
+            for &end in &ends {
+                // An index of k at the vertex leaves 4 - k quarters, one of 2 - (4 - k) at the sector.
+                let (_, high) = sectors.bounds(end);
+                assert_eq!(sectors.quarters(end, f64::from(high)), 4.0 - f64::from(largest));
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use super::barrier::{Advance, advance};
 use super::certificate::IntegerMap;
 use super::connections::connections;
+use super::faces::{PointFace, point_faces};
 use super::gauss::{Gauss, Overflow};
 use super::grids::{Care, grids};
 use super::isolines::turning_points;
@@ -12,10 +13,9 @@ use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
 use super::rounding::{Constraint, Room, RoundingProblem, round_constrained, round_greedily};
 use super::scene::{Connection, Scene, distinct};
-use super::shapes::{Shape, shapes};
 use super::snap::snap;
 use super::space::{GridNeeds, IntegerSpace};
-use super::walls::{Wall, walls};
+use super::walls::walls;
 use super::{IntegerOptions, IntegerRounding};
 use crate::cut::Cut;
 use crate::layout::energy::SymmetricDirichlet;
@@ -67,8 +67,7 @@ pub(super) struct IntegerProblem<'a> {
     moves: Moves,
     /// Connections and ways to isolines up to a radius.
     near: (f64, Vec<Connection>),
-    /// Grid points around vertices.
-    shapes: Vec<Shape>,
+    faces: Vec<PointFace>,
     /// Mesh length of a mean edge.
     unit: f64,
     seconds: f64,
@@ -118,7 +117,7 @@ impl<'a> IntegerProblem<'a> {
         let seconds = start.elapsed().as_secs_f64();
         let scene =
             Scene { mesh, cut: &cut, matching: &matching, needs: &needs, space: &space, z: &z };
-        let shapes = shapes(&scene)?;
+        let faces = point_faces(&scene)?;
         let near = (0.0, Vec::new());
         let unit = metric.unit;
         Ok(Self {
@@ -135,7 +134,7 @@ impl<'a> IntegerProblem<'a> {
             moves,
             matrix,
             near,
-            shapes,
+            faces,
             unit,
             seconds,
         })
@@ -182,7 +181,7 @@ impl<'a> IntegerProblem<'a> {
             for grid in group {
                 (stats.nudges, stats.refinements) = (grid.nudges, grid.refinements);
                 let h = grid.share.sqrt() * cell / self.unit;
-                match self.attempt_with(h, grid.cares, column, &mut stats, watch) {
+                match self.attempt(h, grid.care, column, &mut stats, watch) {
                     Ok((corner_uvs, columns)) => {
                         stats.refined_because = first.map(|f: IntegerFailure| f.to_string());
                         return Ok(Placed { corner_uvs, columns, stats });
@@ -199,29 +198,6 @@ impl<'a> IntegerProblem<'a> {
             }
         }
         Err(first.unwrap_or(IntegerFailure::Unreadable))
-    }
-
-    /// One grid with more and more care; the failure of the last.
-    fn attempt_with(
-        &mut self,
-        h: f64,
-        cares: &[Care],
-        column: i64,
-        stats: &mut IntegerStats,
-        watch: &mut Watch<'_, '_>,
-    ) -> Result<(Vec<[f64; 2]>, i64), IntegerFailure> {
-        let mut result = Err(IntegerFailure::Unreadable);
-        for &care in cares {
-            result = self.attempt(h, care, column, stats, watch);
-            // What conflicts does so with more care, too.
-            if !matches!(
-                result,
-                Err(IntegerFailure::Blocked { .. } | IntegerFailure::Uncertified(_))
-            ) {
-                break;
-            }
-        }
-        result
     }
 
     /// One grid: rounds, moves to the integers, polishes, writes in exact numbers and certifies.
@@ -282,7 +258,7 @@ impl<'a> IntegerProblem<'a> {
                 break (held, y);
             }
             let z = self.problem.space().expand(&y);
-            let walls = self.walls(&z)?;
+            let walls = walls(&self.scene(&z), self.problem.triangles())?;
             if rounds == MOST_ROUNDS || walls.is_empty() {
                 return Err(IntegerFailure::Blocked { reached });
             }
@@ -320,27 +296,20 @@ impl<'a> IntegerProblem<'a> {
         let mean: Vec<f64> = self.coordinates.iter().map(|x| x / h).collect();
         let short = self.near.1.iter().filter(|c| c.length < radius);
         let constraint = |c: &Connection| {
-            let least = if care == Care::Cones { 1 } else { c.least };
+            let least = match care {
+                Care::Cones => 1,
+                Care::Manifold => c.least,
+            };
             Constraint { least, ..Constraint::new(c, &self.coordinates, h) }
         };
         let constraints: Vec<Constraint> = short.map(constraint).collect();
         let (matrix, moves) = (self.matrix.clone(), self.moves.clone());
-        let mut rounding = RoundingProblem { matrix, moves, mean, constraints, shapes: Vec::new() };
-        let matters =
-            |shape: &&Shape| shape.extent < radius && (shape.is_face || care == Care::Vertices);
-        for shape in self.shapes.iter().filter(matters) {
-            let ways = shape.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h));
-            rounding.add(ways.collect(), Room::Vertex { sides: shape.sides.clone() });
+        let mut rounding = RoundingProblem { matrix, moves, mean, constraints, spans: Vec::new() };
+        for face in self.faces.iter().filter(|face| face.extent < radius) {
+            let ways = face.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h));
+            rounding.add(ways.collect(), Room::Face);
         }
         Ok(rounding)
-    }
-
-    /// The walls in a layout that could not go further. None where edges are aligned: isolines would take part.
-    fn walls(&self, z: &[Complex64]) -> Result<Vec<Wall>, Overflow> {
-        match self.aligned.is_empty() {
-            true => walls(&self.scene(z), self.problem.triangles()),
-            false => Ok(Vec::new()),
-        }
     }
 
     /// A layout of the component.

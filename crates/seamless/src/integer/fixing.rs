@@ -19,9 +19,9 @@ const DETERMINED: f64 = 1e-9;
 pub(super) struct Fixing<'a> {
     constraints: &'a [Constraint],
     rows: FlatRows,
-    shapes: &'a [Span],
-    /// The shapes that each constraint takes part in.
-    shapes_of: Vec<Vec<usize>>,
+    spans: &'a [Span],
+    /// The spans that each constraint takes part in.
+    spans_of: Vec<Vec<usize>>,
     now: Conditional,
     means: Vec<[f64; 2]>,
     variances: Vec<f64>,
@@ -92,8 +92,8 @@ impl<'a> Fixing<'a> {
         Self {
             constraints,
             rows: FlatRows::new(constraints),
-            shapes: &problem.shapes,
-            shapes_of: problem.shapes_of(),
+            spans: &problem.spans,
+            spans_of: problem.spans_of(),
             means: constraints.iter().map(mean).collect(),
             variances: constraints.iter().map(variance).collect(),
             determined: DETERMINED * start.mean_variance(),
@@ -125,11 +125,11 @@ impl<'a> Fixing<'a> {
         let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
         let is_determined: Vec<bool> =
             (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
-        // The shapes that get determined by it.
-        let is_settled = |k: &usize| self.shapes[*k].ways.iter().all(|&j| is_determined[j]);
+        // The spans that get determined by it.
+        let is_settled = |k: &usize| self.spans[*k].ways.iter().all(|&j| is_determined[j]);
         let mut settled: Vec<usize> = (0..self.constraints.len())
             .filter(|&j| is_determined[j] && self.variances[j] > self.determined)
-            .flat_map(|j| self.shapes_of[j].iter().copied())
+            .flat_map(|j| self.spans_of[j].iter().copied())
             .filter(is_settled)
             .collect();
         settled.sort_unstable();
@@ -141,7 +141,7 @@ impl<'a> Fixing<'a> {
             };
             let at = |j: usize| self.moved(j, &parts, errors);
             let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
-            let leaves_room = |&k: &usize| self.shapes[k].has_room(at);
+            let leaves_room = |&k: &usize| self.spans[k].has_room(at);
             fits(0)
                 && fits(1)
                 && (0..self.constraints.len()).all(allows)

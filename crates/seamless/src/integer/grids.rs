@@ -18,9 +18,7 @@ pub(super) enum Care {
     /// Lines between grid points and the faces that they span. The quads may be no manifold.
     Cones,
     /// Also no two edges of quads between the same two points.
-    Faces,
-    /// Shapes around vertices as well: more than is needed, but the way is blocked less often.
-    Vertices,
+    Manifold,
 }
 
 /// A grid to try.
@@ -32,12 +30,9 @@ pub(super) struct Grid {
     pub(super) refinements: usize,
     /// Area of its cells against that of those asked for.
     pub(super) share: f64,
-    /// How to round to it, one after the other.
-    pub(super) cares: &'static [Care],
+    /// How to round to it.
+    pub(super) care: Care,
 }
-
-const CAREFUL: &[Care] = &[Care::Faces, Care::Vertices];
-const CARELESS: &[Care] = &[Care::Cones];
 
 /// The grids to try: first nearby ones, then, if they may be, finer ones. In a group all are alike, so that the
 /// rest of it need not be tried once one is hopeless.
@@ -45,21 +40,21 @@ const CARELESS: &[Care] = &[Care::Cones];
 /// Where they may not be finer, there is a map of another size already, which is kept rather than quads that may
 /// be no manifold.
 pub(super) fn grids(rounding: IntegerRounding, may_be_finer: bool) -> Vec<Vec<Grid>> {
-    let nearby = |n: usize, cares| -> Vec<Grid> {
-        let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, cares };
+    let nearby = |n: usize, care| -> Vec<Grid> {
+        let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, care };
         NEARBY[..n].iter().enumerate().map(grid).collect()
     };
     let all = NEARBY.len();
     match (rounding, may_be_finer) {
-        (IntegerRounding::Greedy, _) => vec![nearby(1, &[Care::Faces])],
-        (_, false) => vec![nearby(FEW_NEARBY, CAREFUL)],
+        (IntegerRounding::Greedy, _) => vec![nearby(1, Care::Manifold)],
+        (_, false) => vec![nearby(FEW_NEARBY, Care::Manifold)],
         (_, true) => {
             let finer = |&refinements: &usize| {
                 let share = REFINEMENT.powi(-(refinements as i32));
-                let grid = |cares| vec![Grid { nudges: 0, refinements, share, cares }];
-                [CAREFUL, CARELESS].map(grid)
+                let grid = |care| vec![Grid { nudges: 0, refinements, share, care }];
+                [Care::Manifold, Care::Cones].map(grid)
             };
-            let nearby = [nearby(all, CAREFUL), nearby(all, CARELESS)];
+            let nearby = [nearby(all, Care::Manifold), nearby(all, Care::Cones)];
             nearby.into_iter().chain(REFINEMENTS.iter().flat_map(finer)).collect()
         }
     }
@@ -77,7 +72,7 @@ mod tests {
         let finest = every.last().map_or(1.0, |grid| grid.share);
         assert!((finest - 1.1f64.powi(-42)).abs() < 1e-12);
         let same = grids(IntegerRounding::Constrained, false).concat();
-        assert!(same.iter().all(|g| g.refinements == 0 && !g.cares.contains(&Care::Cones)));
+        assert!(same.iter().all(|g| g.refinements == 0 && g.care == Care::Manifold));
         assert_eq!(grids(IntegerRounding::Greedy, true).concat().len(), 1);
     }
 }

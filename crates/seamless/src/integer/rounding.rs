@@ -6,7 +6,6 @@ use super::moves::Moves;
 use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
-use super::shapes::has_room;
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
@@ -18,7 +17,7 @@ pub struct Constraint {
     pub start: [f64; 2],
     /// Length of the connection there, grid units.
     pub length: f64,
-    /// Grid units that a walk along the grid from one end to the other has at least.
+    /// Grid units that a walk along the grid from one end to the other has at least; with 0 anything is allowed.
     pub least: i64,
 }
 
@@ -31,10 +30,11 @@ impl Constraint {
         Self { rows, start, length: connection.length / h, least: connection.least }
     }
 
-    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`.
+    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`; any if it may vanish.
     pub fn allows(&self, d: [f64; 2]) -> bool {
-        d[0].abs() + d[1].abs() > self.least as f64 - 0.5
-            && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
+        self.least == 0
+            || d[0].abs() + d[1].abs() > self.least as f64 - 0.5
+                && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
     }
 
     /// The displacement at integers.
@@ -60,7 +60,7 @@ pub struct RoundingProblem {
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
     /// What several of them span must leave room for a vertex.
-    pub shapes: Vec<Span>,
+    pub spans: Vec<Span>,
 }
 
 impl RoundingProblem {
@@ -68,16 +68,16 @@ impl RoundingProblem {
     pub fn add(&mut self, ways: Vec<Constraint>, room: Room) {
         let first = self.constraints.len();
         self.constraints.extend(ways);
-        self.shapes.push(Span { ways: (first..self.constraints.len()).collect(), room });
+        self.spans.push(Span { ways: (first..self.constraints.len()).collect(), room });
     }
 
-    /// For each constraint the shapes that it takes part in, by number.
-    pub(super) fn shapes_of(&self) -> Vec<Vec<usize>> {
-        let mut shapes_of = vec![Vec::new(); self.constraints.len()];
-        for (k, span) in self.shapes.iter().enumerate() {
-            span.ways.iter().for_each(|&i| shapes_of[i].push(k));
+    /// For each constraint the spans that it takes part in, by number.
+    pub(super) fn spans_of(&self) -> Vec<Vec<usize>> {
+        let mut spans_of = vec![Vec::new(); self.constraints.len()];
+        for (k, span) in self.spans.iter().enumerate() {
+            span.ways.iter().for_each(|&i| spans_of[i].push(k));
         }
-        shapes_of
+        spans_of
     }
 }
 
@@ -93,18 +93,14 @@ pub struct Span {
 /// What points must leave room for.
 #[derive(Debug, Clone)]
 pub enum Room {
-    /// A vertex that sees these lines between points, 0 the origin, from their left; see
-    /// [`super::shapes::Shape`].
-    Vertex {
-        /// Numbers of the points of each line.
-        sides: Vec<[usize; 2]>,
-    },
+    /// A triangle of the mesh, the origin its first corner: the other two are in order around it.
+    Face,
     /// Triangles that push the points apart, so that these have to be further than this along the pushes; see
     /// [`super::walls::Wall`].
     Triangles {
         /// One for each way.
-        pushes: Vec<[f64; 2]>,
-        /// The sum over all ways of push times displacement has to be more.
+        pushes: Vec<f64>,
+        /// The sum over all ways of push times the first part of the displacement has to be more.
         more_than: f64,
     },
 }
@@ -116,22 +112,17 @@ impl Span {
             Room::Triangles { pushes, more_than } => {
                 along(pushes, self.ways.iter().map(|&i| displacement(i))) > *more_than
             }
-            Room::Vertex { sides } => {
-                if let (&[i, j], 3) = (self.ways.as_slice(), sides.len()) {
-                    let ([a, b], [c, d]) = (displacement(i), displacement(j));
-                    return a * d - b * c > LEFT_TURN;
-                }
-                let others = self.ways.iter().map(|&i| displacement(i));
-                let points: Vec<[f64; 2]> = std::iter::once([0.0; 2]).chain(others).collect();
-                has_room(sides, |k| points[k])
+            Room::Face => {
+                let [[a, b], [c, d]] = [0, 1].map(|k| displacement(self.ways[k]));
+                a * d - b * c > LEFT_TURN
             }
         }
     }
 }
 
 /// How far displacements are along pushes, in all.
-pub(super) fn along(pushes: &[[f64; 2]], displacements: impl Iterator<Item = [f64; 2]>) -> f64 {
-    displacements.zip(pushes).map(|([u, v], [a, b])| a * u + b * v).sum()
+pub(super) fn along(pushes: &[f64], displacements: impl Iterator<Item = [f64; 2]>) -> f64 {
+    displacements.zip(pushes).map(|([u, _], push)| push * u).sum()
 }
 
 /// Twice the area of a triangle of grid points is an integer; a positive one is above this.
@@ -202,7 +193,7 @@ fn violations(problem: &RoundingProblem, x: &[i64]) -> Vec<usize> {
     let mut violated: Vec<usize> =
         (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
     let is_full = |span: &&Span| !span.has_room(|i| constraints[i].at(x));
-    violated.extend(problem.shapes.iter().filter(is_full).flat_map(|span| &span.ways));
+    violated.extend(problem.spans.iter().filter(is_full).flat_map(|span| &span.ways));
     violated
 }
 
@@ -262,7 +253,7 @@ mod tests {
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
         let matrix = Dense { order: 4, values };
         let moves = Moves::reduced(&matrix, &[0.0; 4]);
-        RoundingProblem { matrix, moves, mean, constraints, shapes: vec![] }
+        RoundingProblem { matrix, moves, mean, constraints, spans: vec![] }
     }
 
     /// The best integer point within four of the mean that satisfies the constraints.
@@ -309,8 +300,7 @@ mod tests {
             };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
-            let sides = vec![[0, 1], [1, 2], [2, 0]];
-            problem.shapes = vec![Span { ways: vec![0, 1], room: Room::Vertex { sides } }];
+            problem.spans = vec![Span { ways: vec![0, 1], room: Room::Face }];
             let rounded = round_constrained(&problem).unwrap();
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
             let cross = a[0] * b[1] - a[1] * b[0];
@@ -324,13 +314,18 @@ mod tests {
             let mut problem = problem(seed);
             let free = round_constrained(&problem).unwrap();
             let way = problem.constraints[0].clone();
-            let push = [0.6, 0.8];
+            let pushes = vec![0.6, 0.8];
             let along = |x: &[i64]| {
                 let [u, v] = way.at(x);
-                push[0] * u + push[1] * v
+                pushes[0] * u + pushes[1] * v
             };
             let more_than = along(&free.x) + 0.25;
-            problem.add(vec![way.clone()], Room::Triangles { pushes: vec![push], more_than });
+            let part = |row: &Row| {
+                let rows = [row.clone(), Row::new()];
+                Constraint { rows, least: 0, ..way.clone() }
+            };
+            let room = Room::Triangles { pushes: pushes.clone(), more_than };
+            problem.add(way.rows.iter().map(part).collect(), room);
             let rounded = round_constrained(&problem).unwrap();
             assert!(rounded.violated == 0 && along(&rounded.x) > more_than, "seed {seed}");
             let energy = |x: &[i64]| energy(&problem.matrix, &problem.mean, x);

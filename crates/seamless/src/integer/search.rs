@@ -39,10 +39,10 @@ struct Search<'a> {
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
     violated: usize,
-    /// What violating each constraint counts in a repair, and after these each shape.
+    /// What violating each constraint counts in a repair, and after these each span.
     weights: Vec<f64>,
-    /// For each constraint the shapes that it takes part in.
-    shapes_of: Vec<Vec<usize>>,
+    /// For each constraint the spans that it takes part in.
+    spans_of: Vec<Vec<usize>>,
     /// For each vector of the basis the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
     /// A fall of the energy that counts.
@@ -58,26 +58,16 @@ impl<'a> Search<'a> {
         let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
         let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
         let moved = moved(problem);
-        let shapes_of = problem.shapes_of();
+        let spans_of = problem.spans_of();
         let gain = 1e-6 * energy.abs() + 1e-12;
         let matrix = &basis.matrix;
-        let weights = vec![1.0; problem.constraints.len() + problem.shapes.len()];
+        let weights = vec![1.0; problem.constraints.len() + problem.spans.len()];
         let violated = 0;
-        let mut search = Self {
-            problem,
-            matrix,
-            x,
-            gradient,
-            values,
-            violated,
-            weights,
-            shapes_of,
-            moved,
-            gain,
-        };
+        let mut search =
+            Self { problem, matrix, x, gradient, values, violated, weights, spans_of, moved, gain };
         let every = 0..problem.constraints.len();
         search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
-            + (0..problem.shapes.len()).filter(|&k| !search.has_room(k, &[])).count();
+            + (0..problem.spans.len()).filter(|&k| !search.has_room(k, &[])).count();
         search
     }
 
@@ -85,9 +75,9 @@ impl<'a> Search<'a> {
         self.problem.constraints[i].allows(value.map(|x| x as f64))
     }
 
-    /// Whether a shape leaves room when some constraints take other values.
-    fn has_room(&self, shape: usize, changed: &[(usize, [i64; 2])]) -> bool {
-        self.problem.shapes[shape].has_room(|i| {
+    /// Whether a span leaves room when some constraints take other values.
+    fn has_room(&self, span: usize, changed: &[(usize, [i64; 2])]) -> bool {
+        self.problem.spans[span].has_room(|i| {
             let new = changed.iter().find(|(j, _)| *j == i).map(|(_, value)| *value);
             new.unwrap_or(self.values[i]).map(|x| x as f64)
         })
@@ -112,13 +102,13 @@ impl<'a> Search<'a> {
         steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
     }
 
-    /// Violated constraints and shapes after some moves, and the change of their weight.
+    /// Violated constraints and spans after some moves, and the change of their weight.
     fn after(&self, moves: &[Move]) -> (usize, f64) {
         let changed = self.changed(moves);
-        let mut shapes: Vec<usize> =
-            changed.iter().flat_map(|(i, _)| &self.shapes_of[*i]).copied().collect();
-        shapes.sort_unstable();
-        shapes.dedup();
+        let mut spans: Vec<usize> =
+            changed.iter().flat_map(|(i, _)| &self.spans_of[*i]).copied().collect();
+        spans.sort_unstable();
+        spans.dedup();
         let (mut count, mut weight) = (self.violated, 0.0);
         let mut note = |was_good: bool, is_good: bool, by: f64| match (was_good, is_good) {
             (true, false) => (count, weight) = (count + 1, weight + by),
@@ -128,14 +118,14 @@ impl<'a> Search<'a> {
         for &(i, value) in &changed {
             note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[i]);
         }
-        for k in shapes {
+        for k in spans {
             let weight = self.weights[self.values.len() + k];
             note(self.has_room(k, &[]), self.has_room(k, &changed), weight);
         }
         (count, weight)
     }
 
-    /// Violated constraints and shapes after some moves.
+    /// Violated constraints and spans after some moves.
     fn violated_after(&self, moves: &[Move]) -> usize {
         self.after(moves).0
     }
@@ -155,7 +145,7 @@ impl<'a> Search<'a> {
     /// # Source
     /// Morris 1993, *The breakout method for escaping from local minima*.
     fn repair(&mut self) -> bool {
-        let (n, all) = (self.problem.constraints.len(), self.problem.shapes.len());
+        let (n, all) = (self.problem.constraints.len(), self.problem.spans.len());
         let touching = self.touching();
         let mut best = (self.violated, self.x.clone());
         let mut at = 0;
@@ -173,7 +163,7 @@ impl<'a> Search<'a> {
             let vectors: Vec<usize> = match target.checked_sub(n) {
                 None => touching[target].clone(),
                 Some(k) => {
-                    let ways = self.problem.shapes[k].ways.iter();
+                    let ways = self.problem.spans[k].ways.iter();
                     let mut all: Vec<usize> = ways.flat_map(|&i| touching[i].clone()).collect();
                     all.sort_unstable();
                     all.dedup();
@@ -225,11 +215,11 @@ impl<'a> Search<'a> {
         moves.into_iter().find(|&(cost, m)| self.is_better(cost, &[m])).map(|(_, m)| vec![m])
     }
 
-    /// The coordinates that move a violated constraint, or a shape without room.
+    /// The coordinates that move a violated constraint, or a span without room.
     fn involved(&self) -> Vec<bool> {
         let constraints = 0..self.problem.constraints.len();
         let mut is_bad: Vec<bool> = constraints.map(|i| !self.allows(i, self.values[i])).collect();
-        for (k, span) in self.problem.shapes.iter().enumerate() {
+        for (k, span) in self.problem.spans.iter().enumerate() {
             if !self.has_room(k, &[]) {
                 span.ways.iter().for_each(|&i| is_bad[i] = true);
             }

@@ -1,9 +1,10 @@
 //! What blocks the way to the integers.
 
 use super::conditional::Row;
-use super::gauss::Overflow;
+use super::gauss::{Gauss, Overflow, add_scaled};
+use super::isolines::{part, tied};
 use super::rounding::{Constraint, Room, along};
-use super::scene::{Connection, Scene, Sight};
+use super::scene::{Connection, Scene};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
 use crate::layout::triangle::{Triangle, at_corner};
 use crate::quarter::turn;
@@ -18,25 +19,30 @@ const MOST_FACES: usize = 5000;
 /// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
 const LEAST_PUSH: f64 = 0.25;
 
-/// A cluster of collapsing triangles as the grid points around it feel it.
+/// A cluster of collapsing triangles as the grid points and isolines around it feel it.
 ///
 /// Between them ordinary vertices are in balance, so that near the collapse the areas of the triangles, with
-/// the pushes as multipliers, add up to a linear form in the displacements of the grid points alone:
-/// they must move along the pushes. These are the multipliers of Farkas' lemma, found by a barrier.
+/// the pushes as multipliers, add up to a linear form in the coordinates of the grid points and in the levels of the
+/// isolines alone: these must move along the pushes. Those are the multipliers of Farkas' lemma, found by a barrier.
 #[derive(Debug, Clone)]
 pub struct Wall {
-    /// The ways from one of the grid points to the others.
-    pub ways: Vec<Connection>,
+    /// What the coordinates of grid points and the levels of isolines are more than the first one, as exact forms in
+    /// the coordinates of the space.
+    pub ways: Vec<Row>,
     /// What pushes each of these, the strongest push one.
-    pub pushes: Vec<[f64; 2]>,
+    pub pushes: Vec<f64>,
 }
 
 impl Wall {
     /// What keeps a rounding beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
     /// layout at the wall and grid size `h`, both in the layout's units.
     pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
-        let ways: Vec<Constraint> =
-            self.ways.iter().map(|way| Constraint::new(way, here, h)).collect();
+        let way = |row: &Row| {
+            // Of no length: the rounding takes the shortest first. It may vanish.
+            let rows = [row.clone(), Row::new()];
+            Constraint::new(&Connection { length: 0.0, rows, least: 0 }, here, h)
+        };
+        let ways: Vec<Constraint> = self.ways.iter().map(way).collect();
         let at_x = along(&self.pushes, ways.iter().map(|way| way.at(x)));
         let at_here = along(&self.pushes, ways.iter().map(|way| way.start));
         let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
@@ -59,8 +65,7 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
     let mut is_open: FaceData<bool> = strength.iter().map(|&s| s > WEAK * strongest).collect();
     let mut found = Vec::new();
     for f in scene.mesh.faces() {
-        let has_point = scene.mesh.face_vertices(f).iter().any(|&v| scene.needs.is_point[v]);
-        if is_open[f] && has_point {
+        if is_open[f] {
             let cluster = cluster(scene, f, &mut is_open);
             if cluster.len() <= MOST_FACES {
                 found.extend(wall(scene, &cluster, &pushes)?);
@@ -124,33 +129,40 @@ fn faces_around(mesh: &TriMesh, corner: Halfedge) -> Vec<Reached> {
     found
 }
 
-/// What a cluster asks of the grid points at its corners, a corner of its first face and the others, if there
-/// are any.
+/// What a cluster asks of the grid points and isolines at its corners, if there are any.
 fn wall(
     scene: &Scene<'_>,
     cluster: &[Reached],
     pushes: &[[Complex64; 3]],
 ) -> Result<Option<Wall>, Overflow> {
-    let is_point = |h: &Halfedge| scene.needs.is_point[scene.mesh.origin(*h)];
-    let Some(from) = cluster[0].0.halfedges().into_iter().find(is_point) else { return Ok(None) };
-    // Several corners may be at the end of one way.
-    let mut ways: BTreeMap<[Row; 2], Complex64> = BTreeMap::new();
+    // Of each coordinate, in the plane of the first face.
+    let mut pushed = [Vec::new(), Vec::new()];
     for (f, crossed) in cluster {
-        for (to, push) in f.halfedges().into_iter().zip(pushes[f.0 as usize]) {
-            if is_point(&to) {
-                let (turns, _) = scene.carry(crossed)?;
-                let way = scene.line(&Sight { from, to, length: 0.0, crossed: crossed.clone() })?;
-                *ways.entry(way.rows).or_default() += turn(push, turns);
+        let (turns, carried) = scene.carry(crossed)?;
+        for (corner, push) in f.halfedges().into_iter().zip(pushes[f.0 as usize]) {
+            let push = turn(push, turns);
+            for (coordinate, push) in [push.re, push.im].into_iter().enumerate() {
+                let (there, sign) = tied(coordinate as u32, turns);
+                if let Some(level) = scene.space.level(scene.cut.wedge[corner], there)? {
+                    let mut sum = part(&carried, coordinate as u32);
+                    add_scaled(&mut sum, &level, sign)?;
+                    pushed[coordinate].push((sum, push));
+                }
             }
         }
     }
-    ways.retain(|rows, _| rows.iter().any(|row| !row.is_empty()));
-    let strongest = ways.values().map(|push| push.norm()).fold(0.0, f64::max);
-    let scaled = |(rows, push): ([Row; 2], Complex64)| {
-        // Of no length: the rounding takes the shortest first.
-        (Connection { length: 0.0, rows, least: 1 }, [push.re / strongest, push.im / strongest])
-    };
-    let (ways, pushes) = ways.into_iter().map(scaled).unzip();
+    // Several corners may be at the end of one way.
+    let mut ways: BTreeMap<Row, f64> = BTreeMap::new();
+    for pushed in pushed {
+        for (level, push) in &pushed {
+            let mut way = level.clone();
+            add_scaled(&mut way, &pushed[0].0, Gauss::ONE.negated())?;
+            *ways.entry(scene.space.row(&way)?).or_default() += push;
+        }
+    }
+    ways.retain(|row, _| !row.is_empty());
+    let strongest = ways.values().fold(0.0, |most: f64, push| most.max(push.abs()));
+    let (ways, pushes) = ways.into_iter().map(|(row, push)| (row, push / strongest)).unzip();
     Ok((strongest > 0.0).then_some(Wall { ways, pushes }))
 }
 
@@ -162,7 +174,7 @@ mod tests {
     use crate::integer::rounding::Span;
     use crate::integer::space::{GridNeeds, IntegerSpace};
     use crate::layout::triangle::triangles;
-    use seamstress_surface::{HalfedgeData, Metric, VertexData};
+    use seamstress_surface::{HalfedgeData, Metric, Vertex, VertexData};
 
     /// Four vertices, the last in the middle of the others, which are grid points.
     struct Case {
@@ -178,14 +190,20 @@ mod tests {
         [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [5.0 / 3.0, 1.0, 0.0]];
 
     impl Case {
+        /// Three grid points.
         fn new() -> Self {
+            Self::with(&[0, 1, 2], Vec::new())
+        }
+
+        fn with(points: &[usize], levels: Vec<(Halfedge, u32)>) -> Self {
             let mesh = TriMesh::from_faces(4, &[[0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
             let metric = Metric::from_positions(&mesh, &POSITIONS);
             let no_cones = VertexData::filled(4, false);
             let (cut, _) = connect_cones(&mesh, &metric, &no_cones).unwrap();
             let matching = HalfedgeData::filled(mesh.n_halfedges(), 0);
-            let mut needs = GridNeeds::cones(no_cones);
-            mesh.vertices().take(3).for_each(|v| needs.is_point[v] = true);
+            let mut needs = GridNeeds { levels, ..GridNeeds::cones(no_cones) };
+            let is_point = |v: &Vertex| points.contains(&v.at());
+            mesh.vertices().filter(is_point).for_each(|v| needs.is_point[v] = true);
             let space = IntegerSpace::new(&mesh, &cut, &matching, &needs).unwrap();
             Self { mesh, metric, cut, matching, needs, space }
         }
@@ -211,31 +229,44 @@ mod tests {
         }
 
         /// The pushes on the second and on the third vertex against the first.
-        fn pushes(&self, height: f64) -> Vec<[f64; 2]> {
+        fn pushes(&self, height: f64) -> [[f64; 2]; 2] {
             let wall = self.wall(height);
             let coordinates = self.space.read(&self.layout(height)).0;
-            let at = |way: &Connection| way.rows.each_ref().map(|row| apply(row, &coordinates));
-            let mut ways: Vec<_> = wall.ways.iter().map(at).zip(wall.pushes).collect();
-            // The second is on the first one's line.
-            ways.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
-            let is_at = |way: [f64; 2], x: f64, y: f64| (way[0] - x).hypot(way[1] - y) < 1e-9;
-            assert!(is_at(ways[0].0, 4.0, 0.0) && is_at(ways[1].0, 1.0, 3.0 * height));
-            ways.into_iter().map(|(_, push)| push).collect()
+            // Abscissae of 4 and 1; ordinates of 0 and three heights.
+            [[4.0, 0.0], [1.0, 3.0 * height]].map(|place| {
+                place.map(|x| {
+                    let is_there = |row: &Row| (apply(row, &coordinates) - x).abs() < 1e-9;
+                    let found: Vec<usize> =
+                        (0..wall.ways.len()).filter(|&k| is_there(&wall.ways[k])).collect();
+                    assert_eq!(found.len(), 1, "{x}");
+                    wall.pushes[found[0]]
+                })
+            })
         }
     }
 
     #[test]
     fn a_flat_triangle_of_grid_points_pushes_its_tip_away() {
         // Twice the area is 4 y_tip - 1 y_second for these abscissae: multipliers 4 and -1.
-        let [second, tip] = Case::new().pushes(0.01)[..] else { panic!() };
+        let [second, tip] = Case::new().pushes(0.01);
         let off = |push: [f64; 2], y: f64| push[0].hypot(push[1] - y);
         assert!(off(tip, 1.0) < 0.01 && off(second, -0.25) < 0.01, "{second:?} {tip:?}");
     }
 
     #[test]
     fn a_stretched_triangle_pulls() {
-        let [_, tip] = Case::new().pushes(100.0)[..] else { panic!() };
+        let [_, tip] = Case::new().pushes(100.0);
         assert!(tip[1] < -0.9, "{tip:?}");
+    }
+
+    #[test]
+    fn an_isoline_is_pushed_away_too() {
+        // The tip is the only grid point; the side from the first vertex to the second is on an isoline.
+        let case = Case::with(&[2], vec![(Halfedge(0), 1)]);
+        let Wall { ways, pushes } = case.wall(0.01);
+        let coordinates = case.space.read(&case.layout(0.01)).0;
+        let height = apply(&ways[0], &coordinates);
+        assert!(ways.len() == 1 && (height * pushes[0] - 0.03).abs() < 1e-9, "{ways:?} {pushes:?}");
     }
 
     #[test]
