@@ -16,7 +16,7 @@ pub(crate) struct Shaping<'a> {
     pub(crate) raw: bool,
     /// Rounds of smoothing.
     pub(crate) smooth: u32,
-    /// Edges of the source that keep their vertices, by their ends; the boundary does anyway.
+    /// Edges of the source whose vertices stay on them, by their ends; those of the boundary do anyway.
     pub(crate) features: &'a [[u32; 2]],
 }
 
@@ -37,8 +37,9 @@ impl Shaping<'_> {
         source: &TriMesh,
         extraction: &mut Extraction,
     ) -> Result<Shaped, Failure> {
-        let fixed = extraction.vertices_on(source, self.features);
-        let surface = (mesh.soup.positions.as_slice(), mesh.soup.faces.as_slice());
+        let positions = &mesh.soup.positions;
+        let constraints = extraction.constraints(source, positions, self.features);
+        let surface = (positions.as_slice(), mesh.soup.faces.as_slice());
         let failure = |error: SmoothError| Failure::NoQuads {
             file: mesh.path.clone(),
             text: error.to_string(),
@@ -46,13 +47,14 @@ impl Shaping<'_> {
         let (mut moved, mut largest_move) = (0, 0.0);
         let mut quads: Option<QuadMesh> = None;
         if !self.raw {
-            let options = MendOptions { fixed: fixed.clone(), ..MendOptions::default() };
+            let options =
+                MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
             let mended = mend(&extraction.mesh, surface, &options).map_err(failure)?;
             (moved, largest_move) = (mended.moved, mended.largest_move);
             quads = Some(mended.mesh);
         }
         if self.smooth > 0 {
-            let options = SmoothOptions { rounds: self.smooth, fixed };
+            let options = SmoothOptions { rounds: self.smooth, constraints };
             let start = quads.as_ref().unwrap_or(&extraction.mesh);
             quads = Some(smooth(start, surface, &options).map_err(failure)?.mesh);
         }

@@ -2,6 +2,7 @@
 
 mod badness;
 mod connectivity;
+mod constraints;
 pub mod extract;
 pub mod layout;
 mod manifold;
@@ -14,6 +15,7 @@ mod surface;
 mod vector;
 
 pub use connectivity::{IrregularVertex, QuadConnectivity, QuadFault, QuadFaults};
+pub use constraints::{Constraints, SlideCurve};
 pub use extract::{ExtractError, ExtractOptions, Extraction, extract};
 pub use manifold::{ManifoldError, ManifoldQuads, manifold_quads};
 pub use mend::{MendOptions, Mended, mend};

@@ -1,6 +1,7 @@
 //! Smoothing along a surface.
 
 use crate::badness;
+use crate::constraints::{Constraints, Domain};
 use crate::quality::Orientation;
 use crate::surface::Surface;
 use crate::vector::{Point, add};
@@ -12,13 +13,13 @@ use rayon::prelude::*;
 pub struct SmoothOptions {
     /// How often every vertex is moved.
     pub rounds: u32,
-    /// Vertices that stay where they are; those on the boundary always do.
-    pub fixed: Vec<u32>,
+    /// Vertices that stay where they are, or on a curve.
+    pub constraints: Constraints,
 }
 
 impl Default for SmoothOptions {
     fn default() -> Self {
-        Self { rounds: 10, fixed: Vec::new() }
+        Self { rounds: 10, constraints: Constraints::default() }
     }
 }
 
@@ -49,7 +50,7 @@ const STEP: f64 = 0.5;
 
 /// Moves the vertices of a quad mesh along a surface towards the means of their neighbours.
 ///
-/// Each move ends at the point of the surface nearest to its target. Boundary and fixed vertices stay.
+/// Each move ends at the point of the surface nearest to its target. Boundary and fixed vertices stay, those on curves on them.
 /// A move is made only if it does not raise the worst of the quads around the vertex, judged by the
 /// cosines of their corners and by their side of the surface, and if no more of them are inverted or crossed.
 ///
@@ -65,27 +66,19 @@ pub fn smooth(
 ) -> Result<Smoothed, SmoothError> {
     let connectivity = mesh.connectivity()?;
     let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
-    let mut is_fixed: Vec<bool> =
-        (0..mesh.positions().len() as u32).map(|v| connectivity.is_boundary(v)).collect();
-    for &v in &options.fixed {
-        if let Some(is_fixed) = is_fixed.get_mut(v as usize) {
-            *is_fixed = true;
-        }
-    }
-    let free: Vec<u32> = (0..mesh.positions().len() as u32)
-        .filter(|&v| !is_fixed[v as usize] && connectivity.valence(v) > 0)
-        .collect();
     let positions = mesh.positions().to_vec();
-    let normals = positions.par_iter().map(|&p| surface.normal(p)).collect();
+    let domain = Domain::new(surface, &connectivity, positions.len(), &options.constraints);
+    let movable: Vec<u32> = (0..positions.len() as u32).filter(|&v| !domain.is_fixed(v)).collect();
+    let normals = positions.par_iter().map(|&p| domain.normal(p)).collect();
     let mut state = State { connectivity: &connectivity, quads: mesh.quads(), positions, normals };
     let mut refused = 0;
     for _ in 0..options.rounds {
         let on_surface = |&v: &u32| {
-            let at = surface.nearest(state.target(v));
-            (at, surface.normal(at))
+            let at = domain.nearest(v, state.target(v));
+            (at, domain.normal(at))
         };
-        let targets: Vec<(Point, Point)> = free.par_iter().map(on_surface).collect();
-        refused = free.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
+        let targets: Vec<(Point, Point)> = movable.par_iter().map(on_surface).collect();
+        refused = movable.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
     }
     let positions = state.positions;
     Ok(Smoothed { mesh: QuadMesh::from_parts(positions, mesh.quads().to_vec()), refused })
@@ -211,9 +204,10 @@ mod tests {
         positions[0] = [0.1, 0.0, 0.0];
         let mesh = QuadMesh::new(positions, quads_of(&shape.faces)).unwrap();
         let fixed = mesh.quads().iter().flat_map(|q| [q[0], q[2]]).collect();
-        let options = SmoothOptions { rounds: 3, fixed };
+        let constraints = Constraints { fixed, ..Constraints::default() };
+        let options = SmoothOptions { rounds: 3, constraints };
         let smoothed = smooth(&mesh, (&shape.positions, &shape.faces), &options).unwrap();
-        for &v in &options.fixed {
+        for &v in &options.constraints.fixed {
             assert_eq!(smoothed.mesh.positions()[v as usize], mesh.positions()[v as usize]);
         }
     }

@@ -1,7 +1,6 @@
 //! A triangulated surface to project to.
 
-use crate::vector::{Point, add, angle, cross, scale, sub, unit};
-use parry3d_f64::math::Vector;
+use crate::vector::{Point, add, angle, cross, scale, sub, unit, vector};
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{TriMesh as Bvh, Triangle, TrianglePointLocation};
 use std::collections::HashMap;
@@ -80,10 +79,6 @@ impl Surface {
 
 fn edge(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
-}
-
-fn vector([x, y, z]: Point) -> Vector {
-    Vector::new(x, y, z)
 }
 
 /// Distance of a point from a triangle.

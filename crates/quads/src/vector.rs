@@ -1,6 +1,13 @@
 //! Vectors of space.
 
+use parry3d_f64::math::Vector;
+
 pub(crate) type Point = [f64; 3];
+
+/// As the type of the geometry library.
+pub(crate) fn vector([x, y, z]: Point) -> Vector {
+    Vector::new(x, y, z)
+}
 
 pub(crate) fn add(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]

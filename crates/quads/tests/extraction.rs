@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use seamstress_quads::extract::MapFault;
 use seamstress_quads::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, extract};
 use seamstress_surface::TriMesh;
+use seamstress_surface::features::sharp_edges;
 use seamstress_testkit::{
     IntegerMap, annulus, cube, cylinder, disk_grid, l_bracket, random_voxels, slab_with_holes,
     squares, torus,
@@ -126,6 +127,47 @@ fn aligned_boundaries_are_quads_up_to_the_rim() {
             assert!(quads.has_boundary());
         }
     }
+}
+
+#[test]
+fn vertices_on_features_stay_on_their_curves() {
+    for (soup, n, n_nodes, n_curves) in
+        [(cube(), 3, 8, 12), (disk_grid(3, 2), 2, 4, 4), (cylinder(8, 3), 2, 0, 2)]
+    {
+        let map = squares(&soup, n).subdivided();
+        let source = mesh_of(&map);
+        let found = extracted(&map);
+        let edges = sharp_edges(&source, &map.soup.positions, 1.0).vertex_pairs(&source);
+        let constraints = found.constraints(&source, &map.soup.positions, &edges);
+        assert_eq!((constraints.fixed.len(), constraints.curves.len()), (n_nodes, n_curves));
+        let at = |v: u32| found.mesh.positions()[v as usize];
+        let quads = found.mesh.connectivity().unwrap();
+        let mut held = constraints.fixed.clone();
+        for curve in &constraints.curves {
+            held.extend(&curve.vertices);
+            for &v in &curve.vertices {
+                // On a segment of the curve: as far from its ends as they are apart.
+                let gap = |pair: &[[f64; 3]]| {
+                    let [a, b] = [distance(pair[0], at(v)), distance(pair[1], at(v))];
+                    (a + b - distance(pair[0], pair[1])).abs()
+                };
+                assert!(curve.points.windows(2).any(|pair| gap(pair) < 1e-12));
+            }
+        }
+        held.sort_unstable();
+        let on_features: Vec<u32> = match n_nodes {
+            // All vertices with two coordinates of the cube's sides.
+            8 => (0..quads.n_vertices() as u32)
+                .filter(|&v| at(v).iter().filter(|x| x.fract() == 0.0).count() > 1)
+                .collect(),
+            _ => (0..quads.n_vertices() as u32).filter(|&v| quads.is_boundary(v)).collect(),
+        };
+        assert_eq!(held, on_features);
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// The square `[-1, 1]²` as a map of itself, turned and scaled.

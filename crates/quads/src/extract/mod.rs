@@ -8,6 +8,7 @@
 
 mod assemble;
 mod error;
+mod features;
 mod fixed;
 mod patches;
 mod pieces;
@@ -27,9 +28,8 @@ use fixed::Point;
 use patches::Patches;
 use pieces::Pieces;
 use points::{GridPoints, Site};
-use seamstress_surface::{Face, Halfedge, TriMesh, Vertex};
+use seamstress_surface::{Face, TriMesh};
 use snap::{GridMap, snap};
-use std::collections::HashSet;
 
 /// How to extract.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,34 +67,6 @@ pub struct Extraction {
     pub split_vertices: usize,
     /// What became of the folds; nothing for a map without.
     pub folds: Option<Folds>,
-}
-
-impl Extraction {
-    /// The vertices of the quad mesh that lie on edges of the source, or on its boundary, ascending.
-    ///
-    /// Edges are named by their ends. A vertex counts as on an edge if the map has it there exactly.
-    pub fn vertices_on(&self, source: &TriMesh, edges: &[[u32; 2]]) -> Vec<u32> {
-        let named: HashSet<[u32; 2]> = edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
-        let is_wanted = |h: Halfedge| {
-            let [a, b] = [source.origin(h).0, source.tip(h).0];
-            source.twin(h).is_none() || named.contains(&[a.min(b), a.max(b)])
-        };
-        let at_vertex = |v: Vertex| {
-            source.is_boundary(v) || source.outgoing(v).any(|h| is_wanted(h) || is_wanted(h.prev()))
-        };
-        let is_on = |at: &SurfacePoint| {
-            let sides = Face(at.face).halfedges();
-            let zero = at.barycentric.map(|w| w == 0.0);
-            match zero {
-                [false, true, true] => at_vertex(source.origin(sides[0])),
-                [true, false, true] => at_vertex(source.origin(sides[1])),
-                [true, true, false] => at_vertex(source.origin(sides[2])),
-                _ => (0..3).any(|k| zero[(k + 2) % 3] && is_wanted(sides[k])),
-            }
-        };
-        let vertices = self.sources.iter().enumerate().filter(|(_, at)| is_on(at));
-        vertices.map(|(v, _)| v as u32).collect()
-    }
 }
 
 /// A cone of the map in the quad mesh.

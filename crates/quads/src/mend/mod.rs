@@ -3,6 +3,7 @@
 mod restart;
 
 use crate::badness;
+use crate::constraints::{Constraints, Domain};
 use crate::smooth::SmoothError;
 use crate::surface::{Surface, distance_to_triangle};
 use crate::vector::{Point, add, cross, dot, norm, scale, sub, unit};
@@ -17,13 +18,13 @@ pub struct MendOptions {
     pub deviation: f64,
     /// How often each vertex of such quads is moved, at most, in each of four passes.
     pub rounds: u32,
-    /// Vertices that stay where they are; those on the boundary always do.
-    pub fixed: Vec<u32>,
+    /// Vertices that stay where they are, or on a curve.
+    pub constraints: Constraints,
 }
 
 impl Default for MendOptions {
     fn default() -> Self {
-        Self { deviation: 45.0, rounds: 40, fixed: Vec::new() }
+        Self { deviation: 45.0, rounds: 40, constraints: Constraints::default() }
     }
 }
 
@@ -78,33 +79,22 @@ pub fn mend(
     let connectivity = mesh.connectivity()?;
     let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
     let n_vertices = mesh.positions().len() as u32;
-    let mut may_move: Vec<bool> = (0..n_vertices)
-        .map(|v| connectivity.valence(v) > 0 && !connectivity.is_boundary(v))
-        .collect();
-    let irregular = connectivity.irregular_vertices();
-    for &v in &options.fixed {
-        if let Some(may_move) = may_move.get_mut(v as usize) {
-            *may_move = false;
-        }
-    }
+    let domain = Domain::new(surface, &connectivity, n_vertices as usize, &options.constraints);
     let positions = mesh.positions().to_vec();
-    let normals = positions.par_iter().map(|&p| surface.normal(p)).collect();
+    let normals = positions.par_iter().map(|&p| domain.normal(p)).collect();
     let bound = options.deviation.to_radians().sin();
     let (connectivity, quads) = (&connectivity, mesh.quads());
     let homes = mesh.positions();
     let mut state =
-        State { connectivity, quads, surface: &surface, homes, positions, normals, bound };
+        State { connectivity, quads, domain: &domain, homes, positions, normals, bound };
 
+    let is_regular = |v: u32| connectivity.valence(v) == 4 && domain.is_free(v);
     for phase in phases(bound) {
-        let mut may_move_now = may_move.clone();
-        if !phase.with_irregular {
-            irregular.iter().for_each(|irregular| may_move_now[irregular.vertex as usize] = false);
-        }
-        let movable: BTreeSet<u32> =
-            (0..n_vertices).filter(|&v| may_move_now[v as usize]).collect();
+        let may_move = |&v: &u32| !domain.is_fixed(v) && (phase.with_irregular || is_regular(v));
+        let movable: BTreeSet<u32> = (0..n_vertices).filter(may_move).collect();
         state.run(&phase, &movable, options.rounds);
     }
-    state.restart(&may_move, options.rounds);
+    state.restart(options.rounds);
     let moves: Vec<f64> = state
         .positions
         .iter()
@@ -145,7 +135,7 @@ fn phases(bound: f64) -> [Phase; 4] {
 struct State<'a> {
     connectivity: &'a QuadConnectivity,
     quads: &'a [[u32; 4]],
-    surface: &'a Surface,
+    domain: &'a Domain,
     /// Where the vertices come from.
     homes: &'a [Point],
     positions: Vec<Point>,
@@ -208,8 +198,8 @@ impl State<'_> {
         let mut best = (before.sum * (1.0 - LEAST_GAIN), None);
         let (length, targets) = self.targets(v);
         for target in targets {
-            let at = self.surface.nearest(target);
-            let normal_there = self.surface.normal(at);
+            let at = self.domain.nearest(v, target);
+            let normal_there = self.domain.normal(at);
             if dot(normal, normal_there) < phase.least_cosine {
                 continue;
             }
@@ -275,6 +265,7 @@ impl State<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constraints::SlideCurve;
     use crate::quality::{Angles, Orientation};
     use seamstress_testkit::{Rng, disk_grid};
 
@@ -345,8 +336,36 @@ mod tests {
         tangled[centre][0] += 0.3;
         let bad = QuadMesh::new(tangled, quads.clone()).unwrap();
         let fixed = quads.iter().flatten().copied().collect();
-        let options = MendOptions { fixed, ..MendOptions::default() };
+        let constraints = Constraints { fixed, ..Constraints::default() };
+        let options = MendOptions { constraints, ..MendOptions::default() };
         assert_eq!(mend(&bad, surface, &options).unwrap().moved, 0);
+    }
+
+    #[test]
+    fn vertices_on_a_curve_slide_along_it() {
+        let (positions, faces, quads) = grid();
+        let surface = (positions.as_slice(), faces.as_slice());
+        // The middle row, and the lower side of the rim.
+        for height in [0.0, -1.0] {
+            let row: Vec<u32> =
+                (0..).zip(&positions).filter(|(_, p)| p[1] == height).map(|(v, _)| v).collect();
+            let points = vec![[-1.0, height, 0.0], [1.0, height, 0.0]];
+            let (ends, inner) = ([row[0], row[8]], row[1..8].to_vec());
+            let middle = row[4];
+            let mut bad = positions.clone();
+            // Past the next one.
+            bad[middle as usize][0] += 0.3;
+            let bad = QuadMesh::new(bad, quads.clone()).unwrap();
+            let curves = vec![SlideCurve { points, vertices: inner.clone() }];
+            let constraints = Constraints { fixed: ends.to_vec(), curves };
+            let options = MendOptions { constraints, ..MendOptions::default() };
+            let mended = mend(&bad, surface, &options).unwrap().mesh;
+            let after = angles(&mended);
+            assert!(angles(&bad).max > 140.0 && after.max <= 135.1, "{after:?}");
+            let at = |&v: &u32| mended.positions()[v as usize];
+            assert!(inner.iter().all(|v| at(v)[1] == height));
+            assert!(ends.iter().all(|v| at(v) == positions[*v as usize]));
+        }
     }
 
     #[test]

@@ -54,12 +54,12 @@ impl State<'_> {
     ///
     /// They are spread evenly, or scattered with one seed after the other, until a start leads to convex quads
     /// only; else the best is kept that leaves fewer faults than there were, if any.
-    pub(super) fn restart(&mut self, may_move: &[bool], rounds: u32) {
+    pub(super) fn restart(&mut self, rounds: u32) {
         for reach in REACHES {
             let stuck = self.worse_than(reach.worse_than);
             let n_scattered = SCATTERED.min(MOST_SCATTERED / (stuck.len() as u64).max(1));
             for quad in stuck {
-                self.start_over(quad, n_scattered, &reach, may_move, rounds);
+                self.start_over(quad, n_scattered, &reach, rounds);
             }
         }
     }
@@ -82,14 +82,7 @@ impl State<'_> {
         }
     }
 
-    fn start_over(
-        &mut self,
-        quad: u32,
-        n_scattered: u64,
-        reach: &Reach,
-        may_move: &[bool],
-        rounds: u32,
-    ) {
+    fn start_over(&mut self, quad: u32, n_scattered: u64, reach: &Reach, rounds: u32) {
         if self.condition(quad) >= reach.worse_than {
             return;
         }
@@ -98,7 +91,7 @@ impl State<'_> {
             let around = region.iter().flat_map(|&v| self.quads_around(v).flatten());
             region = region.iter().copied().chain(around.collect::<Vec<_>>()).collect();
         }
-        region.retain(|&v| may_move[v as usize]);
+        region.retain(|&v| !self.domain.is_fixed(v));
         let quads: BTreeSet<u32> =
             region.iter().flat_map(|&v| self.connectivity.outgoing(v).map(|h| h / 4)).collect();
         let anywhere = Phase { stray: reach.stray, least_cosine: -1.0, ..phases(self.bound)[1] };
@@ -165,11 +158,11 @@ impl State<'_> {
         }
     }
 
-    /// Puts a vertex at the point of the surface nearest to a target, unless it would stray too far there.
+    /// Puts a vertex at the point nearest to a target, of those where it may be, unless it would stray too far there.
     fn put(&mut self, v: u32, target: Point, stray: f64) {
-        let at = self.surface.nearest(target);
+        let at = self.domain.nearest(v, target);
         if self.stray(v, at) <= stray * self.mean_edge(v) {
-            (self.positions[v as usize], self.normals[v as usize]) = (at, self.surface.normal(at));
+            (self.positions[v as usize], self.normals[v as usize]) = (at, self.domain.normal(at));
         }
     }
 

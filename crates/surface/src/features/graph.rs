@@ -37,6 +37,8 @@ pub struct Node {
 pub struct Curve {
     /// Its vertices in order, one more than it has edges; of a closed curve the first comes again.
     pub vertices: Vec<Vertex>,
+    /// The smaller half-edge of each of its edges, in order.
+    pub edges: Vec<Halfedge>,
     /// Whether no node lies on it; it is closed then.
     pub is_loop: bool,
     /// Number of its edges on the boundary of the mesh.
@@ -132,11 +134,18 @@ impl<'a> Tracer<'a> {
         if self.is_used[edge] {
             return None;
         }
-        let mut curve = Curve { vertices: vec![from], is_loop, boundary_edges: 0, length: 0.0 };
+        let mut curve = Curve {
+            vertices: vec![from],
+            edges: Vec::new(),
+            is_loop,
+            boundary_edges: 0,
+            length: 0.0,
+        };
         let mut at = from;
         let mut next = Some(edge);
         while let Some(edge) = next {
             self.is_used[edge] = true;
+            curve.edges.push(edge);
             curve.length += self.metric.length[edge] * self.metric.unit;
             curve.boundary_edges += usize::from(self.mesh.twin(edge).is_none());
             let (origin, tip) = (self.mesh.origin(edge), self.mesh.tip(edge));
@@ -195,7 +204,10 @@ mod tests {
         assert_eq!(kinds(&graph), [0, 2, 6, 8].map(|v| (v, NodeKind::Turn)));
         assert_eq!((graph.curves.len(), graph.n_loops()), (4, 0));
         for curve in &graph.curves {
-            assert_eq!((curve.vertices.len(), curve.boundary_edges), (3, 2));
+            assert_eq!((curve.vertices.len(), curve.edges.len(), curve.boundary_edges), (3, 2, 2));
+            for (pair, &edge) in curve.vertices.windows(2).zip(&curve.edges) {
+                assert_eq!(mesh.edge_between(pair[0], pair[1]), Some(edge));
+            }
             assert!((curve.length - 2.0).abs() < 1e-14);
         }
         assert!((graph.length() - 8.0).abs() < 1e-14);

@@ -18,7 +18,9 @@ use seamstress_bench::process::exit_code;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, surface_distance,
 };
-use seamstress_quads::{MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth};
+use seamstress_quads::{
+    Constraints, MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth,
+};
 use seamstress_surface::soup;
 use std::error::Error;
 use std::fs;
@@ -173,11 +175,12 @@ fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<
     let counts = check::count(extraction.mesh.quads())?;
     let (made, quads) = (extraction.mesh.positions(), extraction.mesh.quads());
     let mut faults = check::faults(mesh, integer.seamless(), made, quads, &counts);
+    let constraints = extraction.constraints(&mesh.connectivity, positions, &[]);
     let quads = match args.raw {
         true => extraction.mesh,
-        false => mended(&extraction.mesh, source)?,
+        false => mended(&extraction.mesh, source, &constraints)?,
     };
-    let quads = smoothed(quads, source, args.smooth)?;
+    let quads = smoothed(quads, source, args.smooth, constraints)?;
 
     let polygons = || quads.quads().iter().map(<[u32; 4]>::as_slice);
     let orientation = Orientation::new(quads.positions(), polygons(), source)?;
@@ -204,9 +207,11 @@ fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<
 fn mended(
     quads: &QuadMesh,
     source: (&[[f64; 3]], &[[u32; 3]]),
+    constraints: &Constraints,
 ) -> Result<QuadMesh, Box<dyn Error>> {
     let start = Instant::now();
-    let mended = mend(quads, source, &MendOptions::default())?;
+    let options = MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
+    let mended = mend(quads, source, &options)?;
     eprintln!("mended in {:.2} s: {} vertices moved", start.elapsed().as_secs_f64(), mended.moved);
     Ok(mended.mesh)
 }
@@ -215,12 +220,13 @@ fn smoothed(
     quads: QuadMesh,
     source: (&[[f64; 3]], &[[u32; 3]]),
     rounds: u32,
+    constraints: Constraints,
 ) -> Result<QuadMesh, Box<dyn Error>> {
     if rounds == 0 {
         return Ok(quads);
     }
     let start = Instant::now();
-    let options = SmoothOptions { rounds, ..SmoothOptions::default() };
+    let options = SmoothOptions { rounds, constraints };
     let smoothed = smooth(&quads, source, &options)?.mesh;
     eprintln!("smoothed in {:.2} s", start.elapsed().as_secs_f64());
     Ok(smoothed)
