@@ -2,6 +2,7 @@
 
 use crate::args::ExtractArgs;
 use crate::faults::listing;
+use crate::features::{FeatureSource, Features};
 use crate::input::LoadedMesh;
 use crate::job::Job;
 use crate::outcome::{Failure, Status};
@@ -28,6 +29,8 @@ const SHOWN: usize = 5;
 /// The work done, and nothing written yet.
 struct Product {
     mesh: LoadedMesh,
+    /// The features that keep their vertices, if any were asked for.
+    features: Option<Features>,
     extraction: Extraction,
     connectivity: Result<QuadConnectivity, QuadFaults>,
     shaped: Option<Shaped>,
@@ -49,7 +52,10 @@ fn plan(args: &ExtractArgs) -> Result<Plan, Failure> {
     targets.extend(args.picture.iter().map(|path| Target::new(Kind::Picture, path)));
     targets.extend(args.report.iter().map(|path| Target::new(Kind::Report, path)));
     targets.push(Target::new(Kind::Quads, &args.output));
-    Plan::new(&[&args.map], None, targets)
+    let map: &Path = &args.map;
+    let features = args.features.iter().filter_map(FeatureSource::file);
+    let inputs: Vec<&Path> = std::iter::once(map).chain(features).collect();
+    Plan::new(&inputs, None, targets)
 }
 
 fn make(args: &ExtractArgs) -> Result<Product, Failure> {
@@ -58,6 +64,7 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
         mesh.tell_findings();
     }
     let source = mesh.connect()?;
+    let features = Features::resolve(&args.features, false, &mesh, &source)?;
     let no_quads = |text| Failure::NoQuads { file: args.map.clone(), text };
     let options = ExtractOptions { tolerance: args.tolerance, best_effort: args.best_effort };
     let mut extraction = extract(&source, &mesh.soup.positions, &corner_uvs, &options)
@@ -76,7 +83,7 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
     // What folds have left holes in is no surface to shape.
     let mut shaped = None;
     if connectivity.is_ok() && extraction.folds.is_none() {
-        let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: &[] };
+        let shaping = Shaping { raw: args.raw, smooth: args.smooth, features: &features.pairs };
         shaped = Some(shaping.apply(&mesh, &source, &mut extraction)?);
     }
     if let (Some(shaped), false) = (&shaped, args.run.quiet) {
@@ -89,7 +96,8 @@ fn make(args: &ExtractArgs) -> Result<Product, Failure> {
     let picture = picture
         .transpose()
         .map_err(|cause| Failure::NoPicture { file: args.map.clone(), cause })?;
-    Ok(Product { mesh, extraction, connectivity, shaped, picture })
+    let features = (!args.features.is_empty()).then_some(features);
+    Ok(Product { mesh, features, extraction, connectivity, shaped, picture })
 }
 
 /// An error with the elements it names, and what to do about it.
@@ -167,14 +175,7 @@ fn finish(args: &ExtractArgs, job: &Job, plan: &Plan, product: &Product) -> Resu
             _ => writeln!(file, "{report}"),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&report)?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(plan, product, &cost))?;
-    }
-    Ok(())
+    job.finish(&args.run, batch, || report, || summary_text(plan, product, &cost))
 }
 
 /// The quads, in the format of the output's name.
@@ -198,6 +199,7 @@ pub(crate) fn write_quads(
 
 fn summary_text(plan: &Plan, product: &Product, cost: &Cost) -> String {
     let mut rows = summary::mesh_rows(&product.mesh);
+    rows.extend(product.features.iter().flat_map(summary::feature_rows));
     rows.extend(quad_rows(&product.extraction, &product.connectivity));
     rows.extend(product.shaped.iter().flat_map(Shaped::rows));
     let mut time = format!("{:.2} s", cost.wall_seconds);
@@ -288,6 +290,7 @@ fn report_json(args: &ExtractArgs, plan: &Plan, product: &Product, cost: Cost) -
             "smooth": args.smooth,
             "tolerance": args.tolerance,
             "best_effort": args.best_effort,
+            "features": args.features.iter().map(ToString::to_string).collect::<Vec<_>>(),
         },
         "input": report::input_json(&product.mesh),
         "map": {
@@ -296,6 +299,7 @@ fn report_json(args: &ExtractArgs, plan: &Plan, product: &Product, cost: Cost) -
             "cones": extraction.cones,
             "folds": extraction.folds,
         },
+        "features": product.features.as_ref().map(Features::json),
         "quads": quads_json(extraction, &product.connectivity),
         "mended": product.shaped.map(Shaped::mended),
         "orientation": product.shaped.map(Shaped::orientation),

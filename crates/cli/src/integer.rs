@@ -10,7 +10,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::summary;
-use crate::text::{self, counted, figure, row};
+use crate::text::{counted, figure, row};
 use seamstress::integer::{IntegerCertificate, IntegerStats};
 use seamstress::map::compare_source;
 use seamstress::{
@@ -208,14 +208,7 @@ fn finish(args: &IntegerArgs, job: &Job, plan: &Plan, product: &Product) -> Resu
             _ => write_map(file, args, product),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&report)?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(args, plan, product, &cost))?;
-    }
-    Ok(())
+    job.finish(&args.run, batch, || report, || summary_text(args, plan, product, &cost))
 }
 
 fn report_json(args: &IntegerArgs, plan: &Plan, product: &Product, cost: Cost) -> Value {

@@ -2,10 +2,12 @@
 
 use crate::args::RunArgs;
 use crate::outcome::Failure;
+use crate::output::Batch;
 use crate::progress::Bars;
 use crate::report::Cost;
 use crate::stop::{Abandoned, Stop, supervise};
 use crate::system;
+use crate::text;
 use seamstress::Progress;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -52,11 +54,22 @@ impl Job {
         }
     }
 
-    /// Fails if the run was stopped: the last look before files are put in place.
-    pub(crate) fn still_wanted(&self) -> Result<(), Failure> {
-        match self.stop.reason() {
-            Some(reason) => Err(Failure::Stopped { file: self.file.clone(), reason }),
-            None => Ok(()),
+    /// Puts the outputs in place, unless the run was stopped, and prints its report or its summary.
+    pub(crate) fn finish(
+        &self,
+        run: &RunArgs,
+        outputs: Batch,
+        report: impl FnOnce() -> String,
+        summary: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
+        if let Some(reason) = self.stop.reason() {
+            return Err(Failure::Stopped { file: self.file.clone(), reason });
+        }
+        outputs.commit()?;
+        match (run.json, run.quiet) {
+            (true, _) => text::print(&report()),
+            (false, true) => Ok(()),
+            (false, false) => text::print(&summary()),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::stretches::read_stretches;
 use crate::summary;
-use crate::text::{self, counted, figure, row};
+use crate::text::{counted, figure, row};
 use crate::writers::{Written, write_map};
 use seamstress::{
     Anisotropy, ConicStats, MapError, Progress, Relayout, SeamlessMap, lay_out_disk, relayout,
@@ -151,14 +151,7 @@ fn finish(args: &LayoutArgs, job: &Job, plan: &Plan, product: &Product) -> Resul
             _ => write_map(file, mesh, &Written::certified(&solution.map, &solution.distortion)),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&report)?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(args, plan, product, &cost))?;
-    }
-    Ok(())
+    job.finish(&args.run, batch, || report, || summary_text(args, plan, product, &cost))
 }
 
 fn report_text(args: &LayoutArgs, plan: &Plan, product: &Product, cost: Cost) -> String {

@@ -11,7 +11,7 @@ use crate::pictures;
 use crate::report::{self, Cost, MapReport, VERSION};
 use crate::start::read_start;
 use crate::summary;
-use crate::text::{self, row};
+use crate::text::row;
 use crate::writers::{write_cones, write_map};
 use seamstress::{
     FieldMapOptions, MapError, Start, make_aligned_map, make_field_map, make_map_from,
@@ -177,14 +177,7 @@ fn finish(args: &MapArgs, job: &Job, plan: &Plan, product: &Product) -> Result<(
             _ => write_map(file, &product.mesh, &product.made.written()),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&report)?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(plan, product, &cost))?;
-    }
-    Ok(())
+    job.finish(&args.run, batch, || report, || summary_text(plan, product, &cost))
 }
 
 fn report_text(args: &MapArgs, plan: &Plan, product: &Product, cost: Cost) -> String {

@@ -12,7 +12,7 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::shape::{Shaped, Shaping};
 use crate::summary;
-use crate::text::{self, counted, row};
+use crate::text::{counted, row};
 use seamstress::{IntegerOptions, IntegerSolution};
 use seamstress_quads::{Extraction, ManifoldError, QuadConnectivity, QuadFaults, manifold_quads};
 use serde_json::{Value, json};
@@ -124,14 +124,7 @@ fn finish(args: &QuadArgs, job: &Job, plan: &Plan, product: &Product) -> Result<
             _ => writeln!(file, "{report}"),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&report)?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(args, plan, product, &cost))?;
-    }
-    Ok(())
+    job.finish(&args.run, batch, || report, || summary_text(args, plan, product, &cost))
 }
 
 fn report_json(args: &QuadArgs, plan: &Plan, product: &Product, cost: Cost) -> Value {

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::report::{self, VERSION};
 use crate::start::{read_corner_uvs, read_cross_field};
 use crate::summary;
-use crate::text::{self, counted, figure, row};
+use crate::text::{counted, figure, row};
 use seamstress::consistency::{
     AngleNorm, ConsistencyError, ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet,
     SeamMatching, make_consistent, transitions,
@@ -53,13 +53,7 @@ pub(crate) fn run(args: &RepairMatchingsArgs) -> Result<Status, Failure> {
             _ => write_rows(file, &product),
         })?;
     }
-    job.still_wanted()?;
-    batch.commit()?;
-    if args.run.json {
-        text::print(&json_text(args, &product))?;
-    } else if !args.run.quiet {
-        text::print(&summary_text(args, &product))?;
-    }
+    job.finish(&args.run, batch, || json_text(args, &product), || summary_text(args, &product))?;
     Ok(Status::Done)
 }
 

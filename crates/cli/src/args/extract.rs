@@ -1,6 +1,7 @@
 //! Arguments of `extract`.
 
 use super::{EXIT_CODES, RunArgs, not_negative};
+use crate::features::FeatureSource;
 use clap::value_parser;
 use seamstress_quads::ExtractOptions;
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ Examples:
   seamstress extract integer.obj -o quads.obj
   seamstress extract integer.obj -o quads.ply --picture quads.png --report quads.json
   seamstress extract integer.obj -o quads.obj --smooth 10
+  seamstress extract integer.obj -o quads.obj --features angle:40
   seamstress extract other_program.obj -o quads.obj --best-effort";
 
 /// Extract a quad mesh from an integer map
@@ -36,6 +38,13 @@ pub(crate) struct ExtractArgs {
     /// Move the vertices along the surface this many times, to even out angles and lengths
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=1000))]
     pub(crate) smooth: u32,
+
+    /// Keep vertices on these feature edges; may be given several times
+    ///
+    /// They are those that the map aligns, from the sources of `quad`: angle:DEGREES, lines, pairs:FILE or sharp:FILE.
+    /// Where the map has a vertex of the quads on one, that slides along it when quads are mended or smoothed.
+    #[arg(long, value_name = "SOURCE")]
+    pub(crate) features: Vec<FeatureSource>,
 
     /// How far translations, cones and seams may be from exact, in grid units
     #[arg(

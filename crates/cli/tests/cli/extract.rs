@@ -51,6 +51,37 @@ fn quads_are_written_as_ply_too_and_as_nothing_else() {
 }
 
 #[test]
+fn features_keep_their_vertices() {
+    let folder = Folder::new();
+    // A slanted cube, on which smoothing has something to do.
+    let mut map = squares(&cube(), 4);
+    map.soup.positions.iter_mut().for_each(|p| p[0] += 0.5 * p[1]);
+    write_map(&folder, "map.obj", &map);
+    let on_creases = |arguments: &[&str]| {
+        let smooth = ["extract", "map.obj", "-o", "q.obj", "--smooth", "5", "--json"];
+        let run = folder.expect(0, &[&smooth[..], arguments].concat());
+        let is_on = |coordinates: &&str| {
+            let numbers = coordinates.split_whitespace().map(|x| x.parse::<f64>().unwrap());
+            let [x, y, z] = numbers.collect::<Vec<_>>()[..] else { panic!("{coordinates}") };
+            let is_side = |x: &f64| (x - x.round()).abs() < 1e-12;
+            [x - 0.5 * y, y, z].iter().filter(|x| is_side(x)).count() > 1
+        };
+        let quads = folder.read("q.obj");
+        let report: Value = serde_json::from_str(&run.stdout).unwrap();
+        (
+            lines_of(&quads, "v").into_iter().filter(is_on).count(),
+            report["features"]["edges"].clone(),
+        )
+    };
+    let (all, edges) = on_creases(&["--features", "angle:60"]);
+    assert_eq!((all, edges), (8 + 12 * 3, 12.into()));
+    let (left, edges) = on_creases(&[]);
+    assert!(left < all && edges.is_null(), "{left}");
+    let run = folder.expect(1, &["extract", "map.obj", "-o", "q.obj", "--features", "pairs:none"]);
+    assert!(run.stderr.contains("none"), "{run:?}");
+}
+
+#[test]
 fn maps_that_are_not_integral_are_refused() {
     let folder = Folder::new();
     let mut map = squares(&torus(4, 4, 2.0, 0.7), 1);

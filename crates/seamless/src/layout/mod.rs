@@ -6,6 +6,7 @@ pub mod arap;
 pub mod conic;
 pub mod disk;
 pub mod distance;
+mod element;
 pub mod energy;
 pub mod exact;
 pub mod homotopy;

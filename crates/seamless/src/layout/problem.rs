@@ -1,6 +1,7 @@
 //! A layout problem: triangles, the space their corners live in, and one factorisation for both.
 
 use super::anisotropy::Anisotropy;
+use super::element::ElementMap;
 use super::energy::{Energy, ProjectedHessian};
 use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
@@ -12,14 +13,6 @@ use seamstress_numerics::ordering::{Graph, nested_dissection};
 use seamstress_numerics::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_surface::{Metric, TriMesh};
 use std::ops::Range;
-
-/// How the six corner coordinates of a triangle depend on its unknowns.
-enum ElementMap {
-    /// Each coordinate is an unknown of its own, in order.
-    Direct,
-    /// Row-major 6 x m matrix.
-    Matrix(Vec<f64>),
-}
 
 /// Triangles over a linear space, with everything that is prepared once: element maps, assembly,
 /// ordering and symbolic factorisation, workspaces.
@@ -74,7 +67,7 @@ impl LayoutProblem {
         penalty: Option<SeamPenalty>,
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
-            triangles.iter().map(|t| element_map(&space, t)).unzip();
+            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
         for wedges in penalty.iter().flat_map(SeamPenalty::elements) {
             elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
@@ -106,7 +99,7 @@ impl LayoutProblem {
         n_free: usize,
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, elements): (Vec<_>, Vec<_>) =
-            triangles.iter().map(|t| element_map(&space, t)).unzip();
+            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
         let free = |unknowns: &Vec<u32>| {
             unknowns.iter().copied().filter(|&k| (k as usize) < n_free).collect::<Vec<u32>>()
         };
@@ -352,7 +345,7 @@ impl LayoutProblem {
             for (e, state) in range.zip(states) {
                 local(&self.triangles[e], state, &mut tally, &mut l);
                 let len = self.assembly.local(e).len();
-                pull_vector_back(&self.maps[e], &l, &mut locals[at..at + len]);
+                self.maps[e].pull_vector_back(&l, &mut locals[at..at + len]);
                 at += len;
             }
             tally
@@ -411,12 +404,9 @@ impl LayoutProblem {
                     local(&self.triangles[e], state, &mut tally, &mut l, &mut b);
                     let (block_len, local_len) = (assembly.block(e).len(), assembly.local(e).len());
                     let block = &mut blocks[block_at..block_at + block_len];
-                    pull_block_back(&self.maps[e], &b, block, local_len);
-                    pull_vector_back(
-                        &self.maps[e],
-                        &l,
-                        &mut locals[local_at..local_at + local_len],
-                    );
+                    self.maps[e].pull_block_back(&b, block, local_len);
+                    let vector = &mut locals[local_at..local_at + local_len];
+                    self.maps[e].pull_vector_back(&l, vector);
                     block_at += block_len;
                     local_at += local_len;
                 }
@@ -434,78 +424,6 @@ fn chunks(count: usize) -> impl Iterator<Item = Range<usize>> {
 /// Length of what the elements of a range hold, one after the other.
 fn span(range: &Range<usize>, of: impl Fn(usize) -> Range<usize>) -> usize {
     of(range.end - 1).end - of(range.start).start
-}
-
-/// `B^T g` for the 6 x m matrix B of an element.
-fn pull_vector_back(map: &ElementMap, g: &[f64; 6], vector: &mut [f64]) {
-    match map {
-        ElementMap::Direct => vector.copy_from_slice(g),
-        ElementMap::Matrix(map) => {
-            let m = vector.len();
-            for (column, out) in vector.iter_mut().enumerate() {
-                *out = (0..6).map(|row| map[row * m + column] * g[row]).sum();
-            }
-        }
-    }
-}
-
-/// `B^T H B` for the row-major 6 x m matrix B of an element.
-fn pull_block_back(map: &ElementMap, h: &[f64; 21], block: &mut [f64], m: usize) {
-    let map = match map {
-        ElementMap::Direct => return block.copy_from_slice(h),
-        ElementMap::Matrix(map) => map,
-    };
-    let entry = |i: usize, j: usize| {
-        let (i, j) = (i.max(j), i.min(j));
-        h[i * (i + 1) / 2 + j]
-    };
-    let mut at = 0;
-    for a in 0..m {
-        let mut product = [0.0; 6];
-        for i in 0..6 {
-            let x = map[i * m + a];
-            if x != 0.0 {
-                for (j, p) in product.iter_mut().enumerate() {
-                    *p += x * entry(i, j);
-                }
-            }
-        }
-        for b in 0..=a {
-            block[at] = (0..6).map(|j| product[j] * map[j * m + b]).sum();
-            at += 1;
-        }
-    }
-}
-
-fn element_map(space: &LinearSpace, triangle: &Triangle) -> (ElementMap, Vec<u32>) {
-    let rows = triangle.wedges.map(|w| [2 * w as usize, 2 * w as usize + 1]);
-    let rows = rows.as_flattened();
-    let mut unknowns: Vec<u32> = Vec::with_capacity(6);
-    let mut direct = true;
-    for &row in rows {
-        let (columns, coefficients) = space.row(row);
-        direct &= columns.len() == 1 && coefficients[0] == 1.0 && !unknowns.contains(&columns[0]);
-        for &column in columns {
-            if !unknowns.contains(&column) {
-                unknowns.push(column);
-            }
-        }
-    }
-    if direct {
-        return (ElementMap::Direct, unknowns);
-    }
-    unknowns.sort_unstable();
-    let m = unknowns.len();
-    let mut map = vec![0.0; 6 * m];
-    for (i, &row) in rows.iter().enumerate() {
-        let (columns, coefficients) = space.row(row);
-        for (column, &c) in columns.iter().zip(coefficients) {
-            if let Ok(k) = unknowns.binary_search(column) {
-                map[i * m + k] += c;
-            }
-        }
-    }
-    (ElementMap::Matrix(map), unknowns)
 }
 
 /// Elimination order of the unknowns: nested dissection of the graph of their nodes.
