@@ -2,7 +2,7 @@
 
 use super::gauss::{Form, Gauss, Overflow, add_scaled};
 use super::isolines::part;
-use super::scene::{Connection, Scene, Sight, distinct};
+use super::scene::{Carry, Connection, Scene, Sight, distinct};
 use crate::quarter::turn;
 use num_complex::Complex64;
 use seamstress_surface::{Halfedge, HalfedgeData};
@@ -113,7 +113,7 @@ impl Search<'_> {
         quarters: i32,
     ) -> Result<[Vec<(usize, i64)>; 2], Overflow> {
         let scene = self.scene;
-        let (turns, carried) = scene.carry(crossed)?;
+        let Carry { turns, form: carried } = scene.path(crossed)?;
         let real = |sign: i64| Gauss { re: sign, im: 0 };
         // The first two directions are along the axes, the others against them.
         let sense = |quarters: i32| real(if quarters.rem_euclid(4) < 2 { 1 } else { -1 });

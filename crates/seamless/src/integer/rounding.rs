@@ -133,7 +133,7 @@ const LEFT_TURN: f64 = 0.5;
 pub struct Rounded {
     /// One per coordinate.
     pub x: Vec<i64>,
-    /// Connections that collapse or turn around.
+    /// Connections that collapse or turn around, and spans without room.
     pub violated: usize,
     /// Restarts it took.
     pub restarts: usize,
@@ -155,7 +155,7 @@ const PRIORITY: f64 = 10.0;
 /// When the energy is not positive definite.
 pub fn round_greedily(problem: &RoundingProblem) -> Result<Rounded, NotPositiveDefinite> {
     let x = Conditional::new(&problem.matrix, problem.mean.clone())?.round_rest();
-    let violated = violations(problem, &x).len();
+    let violated = violations(problem, &x).0;
     Ok(Rounded { x, violated, restarts: 0 })
 }
 
@@ -172,29 +172,31 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     loop {
         let (conditional, conflicts) = fix_connections(problem, start.clone(), &priority);
         let x = improve(problem, conditional.round_rest());
-        let violated = violations(problem, &x);
-        let key = (violated.len(), energy(&problem.matrix, &problem.mean, &x));
+        let (violated, involved) = violations(problem, &x);
+        let key = (violated, energy(&problem.matrix, &problem.mean, &x));
         if best.as_ref().is_none_or(|b| key < (b.0, b.1)) {
             best = Some((key.0, key.1, x));
         }
-        if violated.is_empty() || violated.len() > HOPELESS || restarts == MOST_RESTARTS {
+        if violated == 0 || violated > HOPELESS || restarts == MOST_RESTARTS {
             break;
         }
         restarts += 1;
-        violated.into_iter().chain(conflicts).for_each(|i| priority[i] += PRIORITY);
+        involved.into_iter().chain(conflicts).for_each(|i| priority[i] += PRIORITY);
     }
     let (violated, _, x) = best.unwrap_or_default();
     Ok(Rounded { x, violated, restarts })
 }
 
-/// The constraints that do not hold, those that leave no room included.
-fn violations(problem: &RoundingProblem, x: &[i64]) -> Vec<usize> {
+/// How many constraints and spans do not hold, and the constraints that have a part in it.
+fn violations(problem: &RoundingProblem, x: &[i64]) -> (usize, Vec<usize>) {
     let constraints = &problem.constraints;
-    let mut violated: Vec<usize> =
+    let mut involved: Vec<usize> =
         (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
     let is_full = |span: &&Span| !span.has_room(|i| constraints[i].at(x));
-    violated.extend(problem.spans.iter().filter(is_full).flat_map(|span| &span.ways));
-    violated
+    let full: Vec<&Span> = problem.spans.iter().filter(is_full).collect();
+    let violated = involved.len() + full.len();
+    involved.extend(full.into_iter().flat_map(|span| &span.ways));
+    (violated, involved)
 }
 
 /// Fixes connections, the shortest as they are now first, at the cheapest value that leaves no determined

@@ -24,6 +24,15 @@ pub struct Scene<'a> {
     pub z: &'a [Complex64],
 }
 
+/// How a path of faces carries a position `q` in its last face back to the first: `i^turns q + form in X`.
+#[derive(Debug, Clone, Default)]
+pub struct Carry {
+    /// Quarter turns.
+    pub turns: i32,
+    /// Translation.
+    pub form: Form,
+}
+
 /// A straight line on the flat surface from one grid point to another, or back to the same; or the way from
 /// an isoline, or a grid point, straight to another isoline.
 #[derive(Debug, Clone)]
@@ -43,25 +52,30 @@ impl Scene<'_> {
         self.z[self.cut.wedge[corner] as usize]
     }
 
-    /// How a path of faces that crosses these half-edges carries a position `q` in its last face back to the
-    /// first: `i^turns q + form in X`.
+    /// A path of faces that goes on across a half-edge of its last one.
     ///
     /// # Errors
     /// [`Overflow`].
-    pub fn carry(&self, crossed: &[Halfedge]) -> Result<(i32, Form), Overflow> {
-        let (mut turns, mut form) = (0, Form::new());
-        for &h in crossed {
-            if let Some((chain, along)) = self.space.graph().chain_of[h] {
-                let after = turns - self.matching[h];
-                let t = Form::from([(chain, Gauss::ONE)]);
-                // A point q beyond the seam is at i^-r (q - t), from its left side; from the right,
-                // the chain's own translation leads back.
-                let factor = if along { Gauss::unit(after).negated() } else { Gauss::unit(turns) };
-                add_scaled(&mut form, &t, factor)?;
-                turns = after;
-            }
+    pub fn across(&self, path: Carry, h: Halfedge) -> Result<Carry, Overflow> {
+        let Carry { mut turns, mut form } = path;
+        if let Some((chain, along)) = self.space.graph().chain_of[h] {
+            let after = turns - self.matching[h];
+            let t = Form::from([(chain, Gauss::ONE)]);
+            // A point q beyond the seam is at i^-r (q - t), from its left side; from the right,
+            // the chain's own translation leads back.
+            let factor = if along { Gauss::unit(after).negated() } else { Gauss::unit(turns) };
+            add_scaled(&mut form, &t, factor)?;
+            turns = after;
         }
-        Ok((turns, form))
+        Ok(Carry { turns, form })
+    }
+
+    /// The path of faces that crosses these half-edges, each in the face that is left.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub fn path(&self, crossed: &[Halfedge]) -> Result<Carry, Overflow> {
+        crossed.iter().try_fold(Carry::default(), |path, &h| self.across(path, h))
     }
 
     /// The straight line from a corner at a grid point to another, through faces.
@@ -69,7 +83,7 @@ impl Scene<'_> {
     /// # Errors
     /// [`Overflow`].
     pub fn line(&self, sight: &Sight) -> Result<Connection, Overflow> {
-        let (turns, mut form) = self.carry(&sight.crossed)?;
+        let Carry { turns, mut form } = self.path(&sight.crossed)?;
         let [to, from] = [sight.to, sight.from].map(|h| self.space.form(self.cut.wedge[h]));
         add_scaled(&mut form, to, Gauss::unit(turns))?;
         add_scaled(&mut form, from, Gauss::ONE.negated())?;

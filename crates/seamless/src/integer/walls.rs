@@ -4,13 +4,13 @@ use super::conditional::Row;
 use super::gauss::{Gauss, Overflow, add_scaled};
 use super::isolines::{part, tied};
 use super::rounding::{Constraint, Room, along};
-use super::scene::{Connection, Scene};
+use super::scene::{Carry, Connection, Scene};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
 use crate::layout::triangle::{Triangle, at_corner};
 use crate::quarter::turn;
 use num_complex::Complex64;
-use seamstress_surface::{Face, FaceData, Halfedge, TriMesh};
-use std::collections::{BTreeMap, VecDeque};
+use seamstress_surface::{Face, FaceData, Halfedge, VertexData};
+use std::collections::BTreeMap;
 
 /// Triangles that push with less than this share of the strongest push are not what blocks the way.
 const WEAK: f64 = 0.02;
@@ -50,8 +50,8 @@ impl Wall {
     }
 }
 
-/// A face of a cluster and the half-edges crossed on the way there from the first one.
-type Reached = (Face, Vec<Halfedge>);
+/// A face of a cluster and how it is reached from the first one.
+type Reached = (Face, Carry);
 
 /// The walls around clusters of collapsing triangles.
 ///
@@ -62,11 +62,14 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
     let strength: Vec<f64> =
         pushes.iter().map(|p| p.iter().map(|f| f.norm()).fold(0.0, f64::max)).collect();
     let strongest = strength.iter().copied().fold(0.0, f64::max);
-    let mut is_open: FaceData<bool> = strength.iter().map(|&s| s > WEAK * strongest).collect();
+    let mut open = Open {
+        faces: strength.iter().map(|&s| s > WEAK * strongest).collect(),
+        vertices: scene.needs.is_point.iter().map(|is_point| !is_point).collect(),
+    };
     let mut found = Vec::new();
     for f in scene.mesh.faces() {
-        if is_open[f] {
-            let cluster = cluster(scene, f, &mut is_open);
+        if open.faces[f] {
+            let cluster = cluster(scene, f, &mut open)?;
             if cluster.len() <= MOST_FACES {
                 found.extend(wall(scene, &cluster, &pushes)?);
             }
@@ -84,49 +87,58 @@ fn pushes(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
     })
 }
 
-/// Open faces that hang together at ordinary vertices, until there are too many; they are closed.
-fn cluster(scene: &Scene<'_>, first: Face, is_open: &mut FaceData<bool>) -> Vec<Reached> {
-    is_open[first] = false;
-    let mut cluster = vec![(first, Vec::new())];
-    let mut queue = VecDeque::from([0]);
-    while let Some(k) = queue.pop_front().filter(|_| cluster.len() <= MOST_FACES) {
-        let (face, crossed): Reached = cluster[k].clone();
-        for corner in face.halfedges() {
-            if scene.needs.is_point[scene.mesh.origin(corner)] {
-                continue;
-            }
-            for (f, around) in faces_around(scene.mesh, corner) {
-                if is_open[f] {
-                    is_open[f] = false;
-                    queue.push_back(cluster.len());
-                    cluster.push((f, crossed.iter().copied().chain(around).collect()));
-                }
-            }
-        }
-    }
-    cluster
+/// What belongs to no cluster yet.
+struct Open {
+    /// Triangles that push.
+    faces: FaceData<bool>,
+    /// Ordinary vertices.
+    vertices: VertexData<bool>,
 }
 
-/// The other faces at a vertex and how they are reached around it from a corner there.
-fn faces_around(mesh: &TriMesh, corner: Halfedge) -> Vec<Reached> {
+/// Open faces that hang together at ordinary vertices; they are closed.
+fn cluster(scene: &Scene<'_>, first: Face, open: &mut Open) -> Result<Vec<Reached>, Overflow> {
+    open.faces[first] = false;
+    let mut cluster = vec![(first, Carry::default())];
+    let mut next = 0;
+    while let Some((face, path)) = cluster.get(next).cloned() {
+        next += 1;
+        for corner in face.halfedges() {
+            let v = scene.mesh.origin(corner);
+            if std::mem::take(&mut open.vertices[v]) {
+                let around = faces_around(scene, corner, &path)?;
+                let is_new = |(f, _): &Reached| std::mem::take(&mut open.faces[*f]);
+                cluster.extend(around.into_iter().filter(is_new));
+            }
+        }
+    }
+    Ok(cluster)
+}
+
+/// The other faces at a vertex, for a path that ends at a corner there and goes on around it.
+fn faces_around(
+    scene: &Scene<'_>,
+    corner: Halfedge,
+    path: &Carry,
+) -> Result<Vec<Reached>, Overflow> {
+    let mesh = scene.mesh;
     let mut found = Vec::new();
     let mut walk = |next: &dyn Fn(Halfedge) -> (Halfedge, Option<Halfedge>)| {
-        let (mut at, mut crossed) = (corner, Vec::new());
+        let (mut at, mut path) = (corner, path.clone());
         loop {
-            let (edge, Some(beyond)) = next(at) else { return false };
+            let (edge, Some(beyond)) = next(at) else { return Ok(false) };
             if beyond == corner {
-                return true;
+                return Ok(true);
             }
-            crossed.push(edge);
+            path = scene.across(path, edge)?;
             at = beyond;
-            found.push((at.face(), crossed.clone()));
+            found.push((at.face(), path.clone()));
         }
     };
-    let is_closed = walk(&|h| (h.prev(), mesh.twin(h.prev())));
+    let is_closed = walk(&|h| (h.prev(), mesh.twin(h.prev())))?;
     if !is_closed {
-        walk(&|h| (h, mesh.twin(h).map(Halfedge::next)));
+        walk(&|h| (h, mesh.twin(h).map(Halfedge::next)))?;
     }
-    found
+    Ok(found)
 }
 
 /// What a cluster asks of the grid points and isolines at its corners, if there are any.
@@ -137,14 +149,13 @@ fn wall(
 ) -> Result<Option<Wall>, Overflow> {
     // Of each coordinate, in the plane of the first face.
     let mut pushed = [Vec::new(), Vec::new()];
-    for (f, crossed) in cluster {
-        let (turns, carried) = scene.carry(crossed)?;
+    for (f, Carry { turns, form: carried }) in cluster {
         for (corner, push) in f.halfedges().into_iter().zip(pushes[f.0 as usize]) {
-            let push = turn(push, turns);
+            let push = turn(push, *turns);
             for (coordinate, push) in [push.re, push.im].into_iter().enumerate() {
-                let (there, sign) = tied(coordinate as u32, turns);
+                let (there, sign) = tied(coordinate as u32, *turns);
                 if let Some(level) = scene.space.level(scene.cut.wedge[corner], there)? {
-                    let mut sum = part(&carried, coordinate as u32);
+                    let mut sum = part(carried, coordinate as u32);
                     add_scaled(&mut sum, &level, sign)?;
                     pushed[coordinate].push((sum, push));
                 }
@@ -174,7 +185,7 @@ mod tests {
     use crate::integer::rounding::Span;
     use crate::integer::space::{GridNeeds, IntegerSpace};
     use crate::layout::triangle::triangles;
-    use seamstress_surface::{HalfedgeData, Metric, Vertex, VertexData};
+    use seamstress_surface::{HalfedgeData, Metric, TriMesh, Vertex};
 
     /// Four vertices, the last in the middle of the others, which are grid points.
     struct Case {
