@@ -112,10 +112,10 @@ pub(crate) fn orientation_row(orientation: &Orientation) -> String {
 }
 
 fn fault_warning(orientation: &Orientation) -> Option<String> {
-    let faults = orientation.inverted + orientation.crossed;
-    let faces = counted(faults, "face");
-    (faults > 0).then(|| {
-        format!("warning: {faces} inverted or crossed, seen from the surface; try more quads")
+    let Orientation { inverted, crossed, .. } = *orientation;
+    (inverted + crossed > 0).then(|| {
+        let faces = counted(inverted, "face");
+        format!("warning: {faces} inverted, {crossed} crossed, seen from the surface; more quads may help")
     })
 }
 
@@ -133,7 +133,10 @@ mod tests {
             "no face is inverted; 3 corners turned against the source; 1 face bent over a thin sheet or sharp edge"
         ));
         (orientation.inverted, orientation.crossed) = (2, 1);
-        assert!(fault_warning(&orientation).is_some_and(|text| text.contains("3 faces")));
+        assert!(
+            fault_warning(&orientation)
+                .is_some_and(|text| text.contains("2 faces inverted, 1 crossed"))
+        );
         assert!(orientation_row(&orientation).contains("2 faces inverted, 1 crossed"));
     }
 }

@@ -50,7 +50,7 @@ const STEP: f64 = 0.5;
 
 /// Moves the vertices of a quad mesh along a surface towards the means of their neighbours.
 ///
-/// Each move ends at the point of the surface nearest to its target. Boundary and fixed vertices stay, those on curves on them.
+/// Each move ends at the point of the surface, or of the vertex's curve, nearest to its target. Fixed vertices stay.
 /// A move is made only if it does not raise the worst of the quads around the vertex, judged by the
 /// cosines of their corners and by their side of the surface, and if no more of them are inverted or crossed.
 ///

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 pub struct MendOptions {
     /// Quads with a corner further from a right angle than this are mended, degrees.
     pub deviation: f64,
-    /// How often each vertex of such quads is moved, at most, in each of four passes.
+    /// How often each vertex of such quads is moved, at most, in each pass; there are four, and one for each new start.
     pub rounds: u32,
     /// Vertices that stay where they are, or on a curve.
     pub constraints: Constraints,
@@ -63,8 +63,8 @@ const OTHER_SIDE: f64 = -0.7;
 /// Where a quad is turned against the surface, or has a corner further from a right angle than asked for,
 /// its vertices are moved: each to the best of some points around it, projected to the surface, by the
 /// badness of all corners around it. No quad becomes worse than it was, or than the bound, and the quads
-/// stay near the point each vertex comes from. All other vertices stay, and boundary and fixed ones;
-/// irregular ones are moved only when the others did not help, and only quads with reflex corners may
+/// stay near the point each vertex comes from. All other vertices stay, and fixed ones; irregular ones and
+/// those on curves are moved only when the others did not help, and only quads with reflex corners may
 /// then stray further. Quads that are inverted, crossed or reflex after all that start over from elsewhere.
 ///
 /// Vertices are moved one by one in their order: the result does not depend on the number of threads.

@@ -25,10 +25,10 @@ const REACHES: [Reach; 4] = [
 ];
 /// Rounds of spreading.
 const SPREADINGS: usize = 20;
-/// Scattered starts after a spread one, for each fault.
-const SCATTERED: u64 = 32;
-/// The same, for all.
-const MOST_SCATTERED: u64 = 640;
+/// Scattered starts after a spread one, for each quad.
+const SCATTERED: usize = 32;
+/// The same for all quads within a reach, and most quads that start over.
+const MOST_SCATTERED: usize = 640;
 
 /// How a quad lies on the surface, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,7 +45,7 @@ enum Condition {
 enum Start {
     /// Each at the mean of its neighbours, again and again.
     Spread,
-    /// Each anywhere within a mean edge of where it was, by this seed.
+    /// Each by up to a mean edge along every axis, by this seed.
     Scattered(u64),
 }
 
@@ -57,8 +57,8 @@ impl State<'_> {
     pub(super) fn restart(&mut self, rounds: u32) {
         for reach in REACHES {
             let stuck = self.worse_than(reach.worse_than);
-            let n_scattered = SCATTERED.min(MOST_SCATTERED / (stuck.len() as u64).max(1));
-            for quad in stuck {
+            let n_scattered = SCATTERED.min(MOST_SCATTERED / stuck.len().max(1));
+            for quad in stuck.into_iter().take(MOST_SCATTERED) {
                 self.start_over(quad, n_scattered, &reach, rounds);
             }
         }
@@ -82,7 +82,7 @@ impl State<'_> {
         }
     }
 
-    fn start_over(&mut self, quad: u32, n_scattered: u64, reach: &Reach, rounds: u32) {
+    fn start_over(&mut self, quad: u32, n_scattered: usize, reach: &Reach, rounds: u32) {
         if self.condition(quad) >= reach.worse_than {
             return;
         }
@@ -99,7 +99,9 @@ impl State<'_> {
         let (faulty, reflex, _) = self.badness(&quads);
         // As many faults are never better.
         let mut best = ((faulty, reflex, f64::NEG_INFINITY), None);
-        for start in [Start::Spread].into_iter().chain((0..n_scattered).map(Start::Scattered)) {
+        for start in
+            [Start::Spread].into_iter().chain((0..n_scattered as u64).map(Start::Scattered))
+        {
             self.begin(start, &region, reach.stray);
             self.run(&anywhere, &region, rounds);
             let badness = self.badness(&quads);

@@ -24,7 +24,7 @@ pub(super) enum Care {
 /// A grid to try.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {
-    /// Its place among those nearby.
+    /// Its place among those nearby, with all care first.
     pub(super) nudges: usize,
     /// How much finer it is, as the power of 1.1 in the number of quads.
     pub(super) refinements: usize,
@@ -40,21 +40,21 @@ pub(super) struct Grid {
 /// Where they may not be finer, there is a map of another size already, which is kept rather than quads that may
 /// be no manifold.
 pub(super) fn grids(rounding: IntegerRounding, may_be_finer: bool) -> Vec<Vec<Grid>> {
-    let nearby = |n: usize, care| -> Vec<Grid> {
+    let nearby = |n: usize, before: usize, care| -> Vec<Grid> {
         let grid = |(nudges, &share)| Grid { nudges, refinements: 0, share, care };
-        NEARBY[..n].iter().enumerate().map(grid).collect()
+        (before..).zip(&NEARBY[..n]).map(grid).collect()
     };
     let all = NEARBY.len();
     match (rounding, may_be_finer) {
-        (IntegerRounding::Greedy, _) => vec![nearby(1, Care::Manifold)],
-        (_, false) => vec![nearby(FEW_NEARBY, Care::Manifold)],
+        (IntegerRounding::Greedy, _) => vec![nearby(1, 0, Care::Manifold)],
+        (_, false) => vec![nearby(FEW_NEARBY, 0, Care::Manifold)],
         (_, true) => {
             let finer = |&refinements: &usize| {
                 let share = REFINEMENT.powi(-(refinements as i32));
                 let grid = |care| vec![Grid { nudges: 0, refinements, share, care }];
                 [Care::Manifold, Care::Cones].map(grid)
             };
-            let nearby = [nearby(all, Care::Manifold), nearby(all, Care::Cones)];
+            let nearby = [nearby(all, 0, Care::Manifold), nearby(all, all, Care::Cones)];
             nearby.into_iter().chain(REFINEMENTS.iter().flat_map(finer)).collect()
         }
     }
@@ -68,6 +68,7 @@ mod tests {
     fn the_grid_asked_for_comes_first_and_finer_ones_last() {
         let every = grids(IntegerRounding::Constrained, true).concat();
         assert_eq!((every[0].share, every[0].refinements), (1.0, 0));
+        assert!(every[..14].iter().enumerate().all(|(k, grid)| grid.nudges == k));
         assert!(every.windows(2).all(|pair| pair[0].refinements <= pair[1].refinements));
         let finest = every.last().map_or(1.0, |grid| grid.share);
         assert!((finest - 1.1f64.powi(-42)).abs() < 1e-12);

@@ -130,15 +130,8 @@ impl Spread<'_> {
 
     /// The level of a wedge, if it is known.
     fn level(&self, wedge: u32, coordinate: u32) -> Result<Option<Form>, Overflow> {
-        let mut level = part(&self.forms[wedge as usize], coordinate);
-        if let Base::Ordinary { vertex, turns } = self.bases[wedge as usize] {
-            let (of_x, sign) = tied(coordinate, turns);
-            match &self.ties[vertex as usize] {
-                Some(tie) if tie.coordinate == of_x => add_scaled(&mut level, &tie.level, sign)?,
-                _ => return Ok(None),
-            }
-        }
-        Ok(Some(level))
+        let wedge = wedge as usize;
+        level(self.bases[wedge], &self.forms[wedge], &self.ties, coordinate)
     }
 
     /// Carries the level from one end of an edge to the other; the vertex that it reaches, if it is new.
@@ -179,6 +172,27 @@ pub fn tied(coordinate: u32, turns: i32) -> (u32, Gauss) {
         _ => (0, -1),
     };
     (of_x, Gauss { re: sign, im: 0 })
+}
+
+/// A coordinate of a wedge with this base and form, if it is integral.
+///
+/// # Errors
+/// [`Overflow`].
+pub fn level(
+    base: Base,
+    form: &Form,
+    ties: &[Option<Tie>],
+    coordinate: u32,
+) -> Result<Option<Form>, Overflow> {
+    let mut level = part(form, coordinate);
+    if let Base::Ordinary { vertex, turns } = base {
+        let (of_x, sign) = tied(coordinate, turns);
+        match &ties[vertex as usize] {
+            Some(tie) if tie.coordinate == of_x => add_scaled(&mut level, &tie.level, sign)?,
+            _ => return Ok(None),
+        }
+    }
+    Ok(Some(level))
 }
 
 /// The real (0) or imaginary (1) part of a form in complex variables, as a form in their real and imaginary

@@ -22,8 +22,10 @@ pub enum IntegerFailure {
     /// The given map flips when its seams are closed exactly.
     #[error("the map has triangles too thin to close its seams exactly")]
     Unreadable,
-    /// Straight connections of cones, or ways between isolines, would vanish.
-    #[error("{violated} straight lines between cones or isolines would vanish or turn around")]
+    /// Straight connections of cones, or ways between isolines, would vanish, or triangles turn over.
+    #[error(
+        "{violated} straight lines between cones or isolines would vanish or turn around, or triangles turn over"
+    )]
     Conflict {
         /// How many.
         violated: usize,
@@ -59,7 +61,7 @@ pub struct IntegerStats {
     pub faces: usize,
     /// Real integer unknowns.
     pub integers: usize,
-    /// Straight connections of cones, and ways to isolines, that were constrained.
+    /// Straight connections of cones, ways to isolines and sides of faces that were constrained.
     pub constraints: usize,
     /// Walls that the way ran into and that were rounded around, on the last grid.
     pub walls: usize,
@@ -69,7 +71,8 @@ pub struct IntegerStats {
     pub moves: usize,
     /// Newton iterations after that.
     pub polish: usize,
-    /// Other grids tried whose number of quads is within 2 % of that of the first.
+    /// Other grids tried whose number of quads is within 3 % of that of the first; from 7 on, two edges of quads may
+    /// join the same two points.
     pub nudges: usize,
     /// Times the grid was made finer, each by 1.1 in the number of quads.
     pub refinements: usize,

@@ -3,9 +3,11 @@
 use super::conditional::{Conditional, Row, apply, energy};
 use super::fixing::Fixing;
 use super::moves::Moves;
+use super::outcome::IntegerFailure;
 use super::reduced::Dense;
 use super::scene::Connection;
 use super::search::improve;
+use crate::progress::{Cancelled, Watch};
 use seamstress_numerics::NotPositiveDefinite;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
@@ -17,7 +19,7 @@ pub struct Constraint {
     pub start: [f64; 2],
     /// Length of the connection there, grid units.
     pub length: f64,
-    /// Grid units that a walk along the grid from one end to the other has at least; with 0 anything is allowed.
+    /// Grid units that a walk along the grid from one end to the other has at least.
     pub least: i64,
 }
 
@@ -30,11 +32,10 @@ impl Constraint {
         Self { rows, start, length: connection.length / h, least: connection.least }
     }
 
-    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`; any if it may vanish.
+    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`.
     pub fn allows(&self, d: [f64; 2]) -> bool {
-        self.least == 0
-            || d[0].abs() + d[1].abs() > self.least as f64 - 0.5
-                && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
+        d[0].abs() + d[1].abs() > self.least as f64 - 0.5
+            && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
     }
 
     /// The displacement at integers.
@@ -59,81 +60,64 @@ pub struct RoundingProblem {
     pub mean: Vec<f64>,
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
-    /// What several of them span must leave room for a vertex.
-    pub spans: Vec<Span>,
+    /// Triangles of the mesh that must keep their orientation, each by the numbers of the constraints that lead from
+    /// its first corner to the second and to the third.
+    pub faces: Vec<[usize; 2]>,
+    /// What the coordinates have to lie in.
+    pub half_spaces: Vec<HalfSpace>,
 }
 
 impl RoundingProblem {
-    /// Adds points that must leave room, with the ways from the origin to the others.
-    pub fn add(&mut self, ways: Vec<Constraint>, room: Room) {
+    /// Adds a face, by the ways from its first corner to the second and to the third.
+    pub fn add_face(&mut self, ways: [Constraint; 2]) {
         let first = self.constraints.len();
         self.constraints.extend(ways);
-        self.spans.push(Span { ways: (first..self.constraints.len()).collect(), room });
+        self.faces.push([first, first + 1]);
     }
 
-    /// For each constraint the spans that it takes part in, by number.
-    pub(super) fn spans_of(&self) -> Vec<Vec<usize>> {
-        let mut spans_of = vec![Vec::new(); self.constraints.len()];
-        for (k, span) in self.spans.iter().enumerate() {
-            span.ways.iter().for_each(|&i| spans_of[i].push(k));
+    /// For each constraint the face that it is a side of, by number.
+    pub(super) fn face_of(&self) -> Vec<Option<usize>> {
+        let mut face_of = vec![None; self.constraints.len()];
+        for (k, ways) in self.faces.iter().enumerate() {
+            ways.iter().for_each(|&i| face_of[i] = Some(k));
         }
-        spans_of
+        face_of
     }
 }
 
-/// Points that must leave room for what is between them.
-#[derive(Debug, Clone)]
-pub struct Span {
-    /// The constraints that lead from the origin to the other points, by number.
-    pub ways: Vec<usize>,
-    /// What there must be room for.
-    pub room: Room,
+/// Whether a face whose sides have these displacements keeps its orientation.
+pub(super) fn is_left_turn([[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
+    // Twice the area of a triangle of grid points is an integer.
+    a * d - b * c > 0.5
 }
 
-/// What points must leave room for.
+/// The points beyond a wall: `normal . x > more_than`.
 #[derive(Debug, Clone)]
-pub enum Room {
-    /// A triangle of the mesh, the origin its first corner: the other two are in order around it.
-    Face,
-    /// Triangles that push the points apart, so that these have to be further than this along the pushes; see
-    /// [`super::walls::Wall`].
-    Triangles {
-        /// One for each way.
-        pushes: Vec<f64>,
-        /// The sum over all ways of push times the first part of the displacement has to be more.
-        more_than: f64,
-    },
+pub struct HalfSpace {
+    /// One entry per coordinate.
+    pub normal: Vec<f64>,
+    /// The bound.
+    pub more_than: f64,
 }
 
-impl Span {
-    /// Whether there is room when the constraints have these displacements.
-    pub fn has_room(&self, displacement: impl Fn(usize) -> [f64; 2]) -> bool {
-        match &self.room {
-            Room::Triangles { pushes, more_than } => {
-                along(pushes, self.ways.iter().map(|&i| displacement(i))) > *more_than
-            }
-            Room::Face => {
-                let [[a, b], [c, d]] = [0, 1].map(|k| displacement(self.ways[k]));
-                a * d - b * c > LEFT_TURN
-            }
-        }
+impl HalfSpace {
+    /// `normal . x` at integers.
+    pub fn at(&self, x: &[i64]) -> f64 {
+        self.normal.iter().zip(x).map(|(n, &x)| n * x as f64).sum()
+    }
+
+    /// Whether a point with this value of `normal . x` lies in it.
+    pub fn allows(&self, value: f64) -> bool {
+        value > self.more_than
     }
 }
-
-/// How far displacements are along pushes, in all.
-pub(super) fn along(pushes: &[f64], displacements: impl Iterator<Item = [f64; 2]>) -> f64 {
-    displacements.zip(pushes).map(|([u, _], push)| push * u).sum()
-}
-
-/// Twice the area of a triangle of grid points is an integer; a positive one is above this.
-const LEFT_TURN: f64 = 0.5;
 
 /// Integers for the coordinates.
 #[derive(Debug, Clone)]
 pub struct Rounded {
     /// One per coordinate.
     pub x: Vec<i64>,
-    /// Connections that collapse or turn around, and spans without room.
+    /// Connections that collapse or turn around, faces that turn over, and walls that the integers are not beyond.
     pub violated: usize,
     /// Restarts it took.
     pub restarts: usize,
@@ -163,15 +147,18 @@ pub fn round_greedily(problem: &RoundingProblem) -> Result<Rounded, NotPositiveD
 /// priorities while constraints are violated.
 ///
 /// # Errors
-/// When the energy is not positive definite.
-pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositiveDefinite> {
+/// When the energy is not positive definite, or the observer breaks.
+pub fn round_constrained(
+    problem: &RoundingProblem,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Rounded, IntegerFailure> {
     let start = Conditional::new(&problem.matrix, problem.mean.clone())?;
     let mut priority = vec![0.0; problem.constraints.len()];
     let mut best: Option<(usize, f64, Vec<i64>)> = None;
     let mut restarts = 0;
     loop {
-        let (conditional, conflicts) = fix_connections(problem, start.clone(), &priority);
-        let x = improve(problem, conditional.round_rest());
+        let (conditional, conflicts) = fix_connections(problem, start.clone(), &priority, watch)?;
+        let x = improve(problem, conditional.round_rest(), watch)?;
         let (violated, involved) = violations(problem, &x);
         let key = (violated, energy(&problem.matrix, &problem.mean, &x));
         if best.as_ref().is_none_or(|b| key < (b.0, b.1)) {
@@ -187,15 +174,16 @@ pub fn round_constrained(problem: &RoundingProblem) -> Result<Rounded, NotPositi
     Ok(Rounded { x, violated, restarts })
 }
 
-/// How many constraints and spans do not hold, and the constraints that have a part in it.
+/// How many conditions do not hold, and the constraints that have a part in it.
 fn violations(problem: &RoundingProblem, x: &[i64]) -> (usize, Vec<usize>) {
     let constraints = &problem.constraints;
     let mut involved: Vec<usize> =
         (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
-    let is_full = |span: &&Span| !span.has_room(|i| constraints[i].at(x));
-    let full: Vec<&Span> = problem.spans.iter().filter(is_full).collect();
-    let violated = involved.len() + full.len();
-    involved.extend(full.into_iter().flat_map(|span| &span.ways));
+    let is_turned = |ways: &&[usize; 2]| !is_left_turn(ways.map(|i| constraints[i].at(x)));
+    let turned: Vec<&[usize; 2]> = problem.faces.iter().filter(is_turned).collect();
+    let missed = problem.half_spaces.iter().filter(|half| !half.allows(half.at(x))).count();
+    let violated = involved.len() + turned.len() + missed;
+    involved.extend(turned.into_iter().flatten());
     (violated, involved)
 }
 
@@ -205,12 +193,14 @@ fn fix_connections(
     problem: &RoundingProblem,
     start: Conditional,
     priority: &[f64],
-) -> (Conditional, Vec<usize>) {
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Conditional, Vec<usize>), Cancelled> {
     let constraints = &problem.constraints;
     let mut fixing = Fixing::new(problem, start);
     let mut open: Vec<usize> = (0..constraints.len()).collect();
     let mut conflicts = Vec::new();
     loop {
+        watch.pulse()?;
         // What is determined stays so.
         open.retain(|&i| fixing.is_open(i));
         let candidate = open
@@ -227,13 +217,14 @@ fn fix_connections(
             conflicts.push(i);
         }
     }
-    (fixing.into_conditional(), conflicts)
+    Ok((fixing.into_conditional(), conflicts))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::integer::conditional::energy;
+    use std::ops::ControlFlow;
 
     /// A positive definite matrix and a mean of two Gaussian integers, from a seed.
     fn problem(seed: u64) -> RoundingProblem {
@@ -255,7 +246,12 @@ mod tests {
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
         let matrix = Dense { order: 4, values };
         let moves = Moves::reduced(&matrix, &[0.0; 4]);
-        RoundingProblem { matrix, moves, mean, constraints, spans: vec![] }
+        RoundingProblem { matrix, moves, mean, constraints, faces: vec![], half_spaces: vec![] }
+    }
+
+    fn rounded(problem: &RoundingProblem) -> Rounded {
+        let mut go_on = |_| ControlFlow::Continue(());
+        round_constrained(problem, &mut Watch::new(&mut go_on, 0, 1)).unwrap()
     }
 
     /// The best integer point within four of the mean that satisfies the constraints.
@@ -277,7 +273,7 @@ mod tests {
         let (mut exact, cases) = (0, 60);
         for seed in 0..cases {
             let problem = problem(seed);
-            let rounded = round_constrained(&problem).unwrap();
+            let rounded = rounded(&problem);
             assert_eq!(rounded.violated, 0, "seed {seed}");
             assert!(problem.constraints.iter().all(|c| c.holds(&rounded.x)), "seed {seed}");
             let (found, best) =
@@ -302,8 +298,8 @@ mod tests {
             };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
-            problem.spans = vec![Span { ways: vec![0, 1], room: Room::Face }];
-            let rounded = round_constrained(&problem).unwrap();
+            problem.faces = vec![[0, 1]];
+            let rounded = rounded(&problem);
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
             let cross = a[0] * b[1] - a[1] * b[0];
             assert!(rounded.violated == 0 && cross > 0.0, "seed {seed}: {a:?} {b:?}");
@@ -314,24 +310,12 @@ mod tests {
     fn points_end_beyond_a_wall() {
         for seed in 0..40 {
             let mut problem = problem(seed);
-            let free = round_constrained(&problem).unwrap();
-            let way = problem.constraints[0].clone();
-            let pushes = vec![0.6, 0.8];
-            let along = |x: &[i64]| {
-                let [u, v] = way.at(x);
-                pushes[0] * u + pushes[1] * v
-            };
-            let more_than = along(&free.x) + 0.25;
-            let part = |row: &Row| {
-                let rows = [row.clone(), Row::new()];
-                Constraint { rows, least: 0, ..way.clone() }
-            };
-            let room = Room::Triangles { pushes: pushes.clone(), more_than };
-            problem.add(way.rows.iter().map(part).collect(), room);
-            let rounded = round_constrained(&problem).unwrap();
-            assert!(rounded.violated == 0 && along(&rounded.x) > more_than, "seed {seed}");
-            let energy = |x: &[i64]| energy(&problem.matrix, &problem.mean, x);
-            assert!(energy(&rounded.x) >= energy(&free.x) - 1e-12, "seed {seed}");
+            let free = rounded(&problem);
+            let mut half = HalfSpace { normal: vec![0.6, 0.8, 0.0, 0.0], more_than: 0.0 };
+            half.more_than = half.at(&free.x) + 0.25;
+            problem.half_spaces.push(half.clone());
+            let rounded = rounded(&problem);
+            assert!(rounded.violated == 0 && half.allows(half.at(&rounded.x)), "seed {seed}");
         }
     }
 
@@ -340,7 +324,7 @@ mod tests {
         for (seed, least) in (0..20).flat_map(|seed| [(seed, 1), (seed, 2), (seed, 3)]) {
             let mut problem = problem(seed);
             problem.constraints[1].least = least;
-            let rounded = round_constrained(&problem).unwrap();
+            let rounded = rounded(&problem);
             let [u, v] = problem.constraints[1].at(&rounded.x);
             assert!(rounded.violated == 0 && u.abs() + v.abs() >= least as f64, "seed {seed}");
         }
@@ -356,6 +340,6 @@ mod tests {
             .map(|c| Constraint { start: [0.2, 0.1], ..c.clone() })
             .collect();
         assert!(round_greedily(&problem).unwrap().violated > 0);
-        assert_eq!(round_constrained(&problem).unwrap().violated, 0);
+        assert_eq!(rounded(&problem).violated, 0);
     }
 }

@@ -2,7 +2,8 @@
 
 use super::conditional::{Row, apply};
 use super::reduced::Dense;
-use super::rounding::RoundingProblem;
+use super::rounding::{RoundingProblem, is_left_turn};
+use crate::progress::{Cancelled, Watch};
 
 /// Most moves in all.
 const MOST_MOVES: usize = 300;
@@ -14,19 +15,37 @@ const MOST_REPAIRS: usize = 1000;
 /// coordinate costs about one.
 const ENERGY_WEIGHT: f64 = 0.05;
 
+/// What integers have to satisfy.
+#[derive(Debug, Clone, Copy)]
+enum Condition {
+    /// A connection, by number.
+    Constraint(usize),
+    /// A face of three grid points.
+    Face(usize),
+    /// A wall to be beyond.
+    HalfSpace(usize),
+}
+
 /// A vector of the basis and how often it is added, 1 or -1.
 type Move = (usize, i64);
 
 /// Takes steps along single vectors of the reduced basis and pairs of them while that lowers the number of
 /// violated constraints, or the energy at the same number; where constraints stay violated, repairs them at
 /// the cost of energy first.
-pub fn improve(problem: &RoundingProblem, x: Vec<i64>) -> Vec<i64> {
+///
+/// # Errors
+/// [`Cancelled`] when the observer breaks.
+pub fn improve(
+    problem: &RoundingProblem,
+    x: Vec<i64>,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Vec<i64>, Cancelled> {
     let mut search = Search::new(problem, x);
-    search.descend();
-    if search.violated > 0 && search.repair() {
-        search.descend();
+    search.descend(watch)?;
+    if search.violated > 0 && search.repair(watch)? {
+        search.descend(watch)?;
     }
-    search.x
+    Ok(search.x)
 }
 
 struct Search<'a> {
@@ -38,13 +57,17 @@ struct Search<'a> {
     gradient: Vec<f64>,
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
+    /// `normal . x` of each half-space.
+    forms: Vec<f64>,
     violated: usize,
-    /// What violating each constraint counts in a repair, and after these each span.
+    /// What violating each condition counts in a repair: constraints, then faces, then half-spaces.
     weights: Vec<f64>,
-    /// For each constraint the spans that it takes part in.
-    spans_of: Vec<Vec<usize>>,
+    /// The face that each constraint is a side of.
+    face_of: Vec<Option<usize>>,
     /// For each vector of the basis the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
+    /// For each vector of the basis how far it leads along the normals of the half-spaces.
+    shifts: Vec<Vec<f64>>,
     /// A fall of the energy that counts.
     gain: f64,
 }
@@ -58,29 +81,72 @@ impl<'a> Search<'a> {
         let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
         let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
         let moved = moved(problem);
-        let spans_of = problem.spans_of();
+        let forms = problem.half_spaces.iter().map(|half| half.at(&x)).collect();
+        let shift = |vector: &Row| {
+            problem.half_spaces.iter().map(|half| apply(vector, &half.normal)).collect()
+        };
+        let shifts = basis.vectors.iter().map(shift).collect();
         let gain = 1e-6 * energy.abs() + 1e-12;
-        let matrix = &basis.matrix;
-        let weights = vec![1.0; problem.constraints.len() + problem.spans.len()];
-        let violated = 0;
-        let mut search =
-            Self { problem, matrix, x, gradient, values, violated, weights, spans_of, moved, gain };
-        let every = 0..problem.constraints.len();
-        search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
-            + (0..problem.spans.len()).filter(|&k| !search.has_room(k, &[])).count();
+        let n = problem.constraints.len() + problem.faces.len() + problem.half_spaces.len();
+        let mut search = Self {
+            problem,
+            matrix: &basis.matrix,
+            x,
+            gradient,
+            values,
+            forms,
+            violated: 0,
+            weights: vec![1.0; n],
+            face_of: problem.face_of(),
+            moved,
+            shifts,
+            gain,
+        };
+        search.violated = search.conditions().filter(|&c| !search.holds(c)).count();
         search
+    }
+
+    /// All conditions.
+    fn conditions(&self) -> impl Iterator<Item = Condition> + use<> {
+        let RoundingProblem { constraints, faces, half_spaces, .. } = self.problem;
+        let constraints = (0..constraints.len()).map(Condition::Constraint);
+        let faces = (0..faces.len()).map(Condition::Face);
+        constraints.chain(faces).chain((0..half_spaces.len()).map(Condition::HalfSpace))
+    }
+
+    /// The place of a condition among all.
+    fn number(&self, condition: Condition) -> usize {
+        let (constraints, faces) = (self.problem.constraints.len(), self.problem.faces.len());
+        match condition {
+            Condition::Constraint(i) => i,
+            Condition::Face(k) => constraints + k,
+            Condition::HalfSpace(k) => constraints + faces + k,
+        }
+    }
+
+    fn holds(&self, condition: Condition) -> bool {
+        match condition {
+            Condition::Constraint(i) => self.allows(i, self.values[i]),
+            Condition::Face(k) => self.keeps_order(k, &[]),
+            Condition::HalfSpace(k) => self.problem.half_spaces[k].allows(self.forms[k]),
+        }
     }
 
     fn allows(&self, i: usize, value: [i64; 2]) -> bool {
         self.problem.constraints[i].allows(value.map(|x| x as f64))
     }
 
-    /// Whether a span leaves room when some constraints take other values.
-    fn has_room(&self, span: usize, changed: &[(usize, [i64; 2])]) -> bool {
-        self.problem.spans[span].has_room(|i| {
-            let new = changed.iter().find(|(j, _)| *j == i).map(|(_, value)| *value);
+    /// Whether a face keeps its orientation when some constraints, in ascending order, take other values.
+    fn keeps_order(&self, face: usize, changed: &[(usize, [i64; 2])]) -> bool {
+        is_left_turn(self.problem.faces[face].map(|i| {
+            let new = changed.binary_search_by_key(&i, |&(j, _)| j).map(|at| changed[at].1);
             new.unwrap_or(self.values[i]).map(|x| x as f64)
-        })
+        }))
+    }
+
+    /// How far some moves lead along the normal of a half-space.
+    fn shift(&self, k: usize, moves: &[Move]) -> f64 {
+        moves.iter().map(|&(vector, step)| step as f64 * self.shifts[vector][k]).sum()
     }
 
     /// Change of the energy by a single move.
@@ -102,40 +168,46 @@ impl<'a> Search<'a> {
         steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
     }
 
-    /// Violated constraints and spans after some moves, and the change of their weight.
+    /// Violated conditions after some moves, and the change of their weight.
     fn after(&self, moves: &[Move]) -> (usize, f64) {
         let changed = self.changed(moves);
-        let mut spans: Vec<usize> =
-            changed.iter().flat_map(|(i, _)| &self.spans_of[*i]).copied().collect();
-        spans.sort_unstable();
-        spans.dedup();
+        let mut faces: Vec<usize> = changed.iter().filter_map(|(i, _)| self.face_of[*i]).collect();
+        faces.sort_unstable();
+        faces.dedup();
         let (mut count, mut weight) = (self.violated, 0.0);
-        let mut note = |was_good: bool, is_good: bool, by: f64| match (was_good, is_good) {
-            (true, false) => (count, weight) = (count + 1, weight + by),
-            (false, true) => (count, weight) = (count - 1, weight - by),
-            _ => {}
+        let mut note = |condition: Condition, is_good: bool| {
+            let by = self.weights[self.number(condition)];
+            match (self.holds(condition), is_good) {
+                (true, false) => (count, weight) = (count + 1, weight + by),
+                (false, true) => (count, weight) = (count - 1, weight - by),
+                _ => {}
+            }
         };
         for &(i, value) in &changed {
-            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[i]);
+            note(Condition::Constraint(i), self.allows(i, value));
         }
-        for k in spans {
-            let weight = self.weights[self.values.len() + k];
-            note(self.has_room(k, &[]), self.has_room(k, &changed), weight);
+        for k in faces {
+            note(Condition::Face(k), self.keeps_order(k, &changed));
+        }
+        for (k, half) in self.problem.half_spaces.iter().enumerate() {
+            note(Condition::HalfSpace(k), half.allows(self.forms[k] + self.shift(k, moves)));
         }
         (count, weight)
     }
 
-    /// Violated constraints and spans after some moves.
+    /// Violated conditions after some moves.
     fn violated_after(&self, moves: &[Move]) -> usize {
         self.after(moves).0
     }
 
     /// Steps as long as they pay.
-    fn descend(&mut self) {
+    fn descend(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
         for _ in 0..MOST_MOVES {
+            watch.pulse()?;
             let Some(moves) = self.best_single().or_else(|| self.best_pair()) else { break };
             self.apply(&moves);
         }
+        Ok(())
     }
 
     /// Looks at one violated constraint after the other and takes the step among those that move it that
@@ -144,32 +216,22 @@ impl<'a> Search<'a> {
     ///
     /// # Source
     /// Morris 1993, *The breakout method for escaping from local minima*.
-    fn repair(&mut self) -> bool {
-        let (n, all) = (self.problem.constraints.len(), self.problem.spans.len());
+    fn repair(&mut self, watch: &mut Watch<'_, '_>) -> Result<bool, Cancelled> {
         let touching = self.touching();
+        let conditions: Vec<Condition> = self.conditions().collect();
         let mut best = (self.violated, self.x.clone());
         let mut at = 0;
         for _ in 0..MOST_REPAIRS {
+            watch.pulse()?;
             if self.violated == 0 {
-                return true;
+                return Ok(true);
             }
-            let is_bad = |&i: &usize| match i.checked_sub(n) {
-                None => !self.allows(i, self.values[i]),
-                Some(k) => !self.has_room(k, &[]),
-            };
-            let next = (0..n + all).map(|k| (at + k) % (n + all)).find(is_bad);
-            let Some(target) = next else { break };
-            at = target + 1;
-            let vectors: Vec<usize> = match target.checked_sub(n) {
-                None => touching[target].clone(),
-                Some(k) => {
-                    let ways = self.problem.spans[k].ways.iter();
-                    let mut all: Vec<usize> = ways.flat_map(|&i| touching[i].clone()).collect();
-                    all.sort_unstable();
-                    all.dedup();
-                    all
-                }
-            };
+            let (before, after) = conditions.split_at(at.min(conditions.len()));
+            let next = after.iter().chain(before).find(|&&condition| !self.holds(condition));
+            let Some(&target) = next else { break };
+            let number = self.number(target);
+            at = number + 1;
+            let vectors = &touching[number];
             let worth = vectors
                 .iter()
                 .flat_map(|&k| [(k, 1), (k, -1)])
@@ -181,18 +243,29 @@ impl<'a> Search<'a> {
                         best = (self.violated, self.x.clone());
                     }
                 }
-                _ => self.weights[target] += 1.0,
+                _ => self.weights[number] += 1.0,
             }
         }
         self.x = best.1;
-        self.violated == 0
+        Ok(self.violated == 0)
     }
 
-    /// For each constraint the vectors of the basis that move it.
+    /// For each condition the vectors of the basis that move it.
     fn touching(&self) -> Vec<Vec<usize>> {
-        let mut touching = vec![Vec::new(); self.problem.constraints.len()];
-        for (k, moved) in self.moved.iter().enumerate() {
-            moved.iter().for_each(|&(i, _)| touching[i].push(k));
+        let mut touching = vec![Vec::new(); self.weights.len()];
+        for (vector, moved) in self.moved.iter().enumerate() {
+            moved.iter().for_each(|&(i, _)| touching[i].push(vector));
+            for (k, &shift) in self.shifts[vector].iter().enumerate() {
+                if shift != 0.0 {
+                    touching[self.number(Condition::HalfSpace(k))].push(vector);
+                }
+            }
+        }
+        for (k, ways) in self.problem.faces.iter().enumerate() {
+            let mut vectors = ways.map(|i| touching[i].clone()).concat();
+            vectors.sort_unstable();
+            vectors.dedup();
+            touching[self.number(Condition::Face(k))] = vectors;
         }
         touching
     }
@@ -215,16 +288,14 @@ impl<'a> Search<'a> {
         moves.into_iter().find(|&(cost, m)| self.is_better(cost, &[m])).map(|(_, m)| vec![m])
     }
 
-    /// The coordinates that move a violated constraint, or a span without room.
+    /// The vectors of the basis that move a violated condition.
     fn involved(&self) -> Vec<bool> {
-        let constraints = 0..self.problem.constraints.len();
-        let mut is_bad: Vec<bool> = constraints.map(|i| !self.allows(i, self.values[i])).collect();
-        for (k, span) in self.problem.spans.iter().enumerate() {
-            if !self.has_room(k, &[]) {
-                span.ways.iter().for_each(|&i| is_bad[i] = true);
-            }
+        let mut involved = vec![false; self.x.len()];
+        let touching = self.touching();
+        for condition in self.conditions().filter(|&condition| !self.holds(condition)) {
+            touching[self.number(condition)].iter().for_each(|&k| involved[k] = true);
         }
-        self.moved.iter().map(|moved| moved.iter().any(|(i, _)| is_bad[*i])).collect()
+        involved
     }
 
     /// The best pair among the cheapest ones; while constraints are violated, of those that touch one.
@@ -264,6 +335,9 @@ impl<'a> Search<'a> {
 
     fn apply(&mut self, moves: &[Move]) {
         self.violated = self.violated_after(moves);
+        for k in 0..self.forms.len() {
+            self.forms[k] += self.shift(k, moves);
+        }
         for (i, value) in self.changed(moves) {
             self.values[i] = value;
         }

@@ -2,7 +2,7 @@
 
 use super::conditional::{Row, apply};
 use super::gauss::{Form, Gauss, Overflow, add_scaled};
-use super::isolines::{Levels, Tie, part, tied};
+use super::isolines::{Levels, Tie, level, part, tied};
 use super::lattice::Lattice;
 use super::walk::Walker;
 use crate::cut::{Cut, SeamGraph};
@@ -197,15 +197,7 @@ impl IntegerSpace {
     /// # Errors
     /// [`Overflow`].
     pub fn level(&self, wedge: u32, coordinate: u32) -> Result<Option<Form>, Overflow> {
-        let mut level = part(self.form(wedge), coordinate);
-        if let Base::Ordinary { vertex, turns } = self.base(wedge) {
-            let (of_x, sign) = tied(coordinate, turns);
-            match &self.ties[vertex as usize] {
-                Some(tie) if tie.coordinate == of_x => add_scaled(&mut level, &tie.level, sign)?,
-                _ => return Ok(None),
-            }
-        }
-        Ok(Some(level))
+        level(self.base(wedge), self.form(wedge), &self.ties, coordinate)
     }
 
     /// The held unknowns as integer forms in the coordinates.

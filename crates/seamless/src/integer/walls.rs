@@ -3,8 +3,9 @@
 use super::conditional::Row;
 use super::gauss::{Gauss, Overflow, add_scaled};
 use super::isolines::{part, tied};
-use super::rounding::{Constraint, Room, along};
-use super::scene::{Carry, Connection, Scene};
+use super::reduced::dot;
+use super::rounding::HalfSpace;
+use super::scene::{Carry, Scene};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
 use crate::layout::triangle::{Triangle, at_corner};
 use crate::quarter::turn;
@@ -12,41 +13,32 @@ use num_complex::Complex64;
 use seamstress_surface::{Face, FaceData, Halfedge, VertexData};
 use std::collections::BTreeMap;
 
-/// Triangles that push with less than this share of the strongest push are not what blocks the way.
+/// Triangles with less than this share of the strongest force are not what blocks the way.
 const WEAK: f64 = 0.02;
 /// Clusters of more faces are no walls: there the whole layout is in tension.
 const MOST_FACES: usize = 5000;
-/// How much further along the pushes of a wall other integers have to be, grid units of the strongest push.
-const LEAST_PUSH: f64 = 0.25;
+/// How much further along the forces of a wall other integers have to be, grid units where the strongest is one.
+const LEAST_WAY: f64 = 0.25;
 
 /// A cluster of collapsing triangles as the grid points and isolines around it feel it.
 ///
 /// Between them ordinary vertices are in balance, so that near the collapse the areas of the triangles, with
-/// the pushes as multipliers, add up to a linear form in the coordinates of the grid points and in the levels of the
-/// isolines alone: these must move along the pushes. Those are the multipliers of Farkas' lemma, found by a barrier.
+/// the forces as multipliers, add up to a linear form in the coordinates of the grid points and in the levels of the
+/// isolines alone: these must move along the forces. It is a cut by Farkas' lemma, its multipliers found by a barrier.
 #[derive(Debug, Clone)]
 pub struct Wall {
-    /// What the coordinates of grid points and the levels of isolines are more than the first one, as exact forms in
-    /// the coordinates of the space.
-    pub ways: Vec<Row>,
-    /// What pushes each of these, the strongest push one.
-    pub pushes: Vec<f64>,
+    /// The forces on the coordinates of the space; the strongest on a grid point or isoline is one.
+    pub normal: Vec<f64>,
 }
 
 impl Wall {
-    /// What keeps a rounding beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
+    /// Where a rounding is beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
     /// layout at the wall and grid size `h`, both in the layout's units.
-    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
-        let way = |row: &Row| {
-            // Of no length: the rounding takes the shortest first. It may vanish.
-            let rows = [row.clone(), Row::new()];
-            Constraint::new(&Connection { length: 0.0, rows, least: 0 }, here, h)
-        };
-        let ways: Vec<Constraint> = self.ways.iter().map(way).collect();
-        let at_x = along(&self.pushes, ways.iter().map(|way| way.at(x)));
-        let at_here = along(&self.pushes, ways.iter().map(|way| way.start));
-        let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_PUSH);
-        (ways, Room::Triangles { pushes: self.pushes.clone(), more_than })
+    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> HalfSpace {
+        let mut half = HalfSpace { normal: self.normal.clone(), more_than: 0.0 };
+        let (at_x, at_here) = (half.at(x), dot(&self.normal, here) / h);
+        half.more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_WAY);
+        half
     }
 }
 
@@ -58,9 +50,9 @@ type Reached = (Face, Carry);
 /// # Errors
 /// [`Overflow`].
 pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Overflow> {
-    let pushes: Vec<[Complex64; 3]> = triangles.iter().map(|t| pushes(t, scene.z)).collect();
+    let forces: Vec<[Complex64; 3]> = triangles.iter().map(|t| forces(t, scene.z)).collect();
     let strength: Vec<f64> =
-        pushes.iter().map(|p| p.iter().map(|f| f.norm()).fold(0.0, f64::max)).collect();
+        forces.iter().map(|p| p.iter().map(|f| f.norm()).fold(0.0, f64::max)).collect();
     let strongest = strength.iter().copied().fold(0.0, f64::max);
     let mut open = Open {
         faces: strength.iter().map(|&s| s > WEAK * strongest).collect(),
@@ -71,7 +63,7 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
         if open.faces[f] {
             let cluster = cluster(scene, f, &mut open)?;
             if cluster.len() <= MOST_FACES {
-                found.extend(wall(scene, &cluster, &pushes)?);
+                found.extend(wall(scene, &cluster, &forces)?);
             }
         }
     }
@@ -79,7 +71,7 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
 }
 
 /// The forces of a triangle's energy on its corners.
-fn pushes(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
+fn forces(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
     let d = ProjectedHessian::new(&SymmetricDirichlet, &t.jacobian(z)).gradient;
     t.gradients.map(|g| {
         let [x, y] = at_corner(d, g);
@@ -145,44 +137,45 @@ fn faces_around(
 fn wall(
     scene: &Scene<'_>,
     cluster: &[Reached],
-    pushes: &[[Complex64; 3]],
+    forces: &[[Complex64; 3]],
 ) -> Result<Option<Wall>, Overflow> {
-    // Of each coordinate, in the plane of the first face.
-    let mut pushed = [Vec::new(), Vec::new()];
+    // Levels of both coordinates and the forces on them, in the plane of the first face.
+    let mut felt = [Vec::new(), Vec::new()];
     for (f, Carry { turns, form: carried }) in cluster {
-        for (corner, push) in f.halfedges().into_iter().zip(pushes[f.0 as usize]) {
-            let push = turn(push, *turns);
-            for (coordinate, push) in [push.re, push.im].into_iter().enumerate() {
+        for (corner, force) in f.halfedges().into_iter().zip(forces[f.at()]) {
+            let force = turn(force, *turns);
+            for (coordinate, force) in [force.re, force.im].into_iter().enumerate() {
                 let (there, sign) = tied(coordinate as u32, *turns);
                 if let Some(level) = scene.space.level(scene.cut.wedge[corner], there)? {
                     let mut sum = part(carried, coordinate as u32);
                     add_scaled(&mut sum, &level, sign)?;
-                    pushed[coordinate].push((sum, push));
+                    felt[coordinate].push((sum, force));
                 }
             }
         }
     }
-    // Several corners may be at the end of one way.
+    // The forces add up to zero: only ways from the first one count. Several corners may be at the end of one.
     let mut ways: BTreeMap<Row, f64> = BTreeMap::new();
-    for pushed in pushed {
-        for (level, push) in &pushed {
+    for felt in felt {
+        for (level, force) in &felt {
             let mut way = level.clone();
-            add_scaled(&mut way, &pushed[0].0, Gauss::ONE.negated())?;
-            *ways.entry(scene.space.row(&way)?).or_default() += push;
+            add_scaled(&mut way, &felt[0].0, Gauss::ONE.negated())?;
+            *ways.entry(scene.space.row(&way)?).or_default() += force;
         }
     }
     ways.retain(|row, _| !row.is_empty());
-    let strongest = ways.values().fold(0.0, |most: f64, push| most.max(push.abs()));
-    let (ways, pushes) = ways.into_iter().map(|(row, push)| (row, push / strongest)).unzip();
-    Ok((strongest > 0.0).then_some(Wall { ways, pushes }))
+    let strongest = ways.values().fold(0.0, |most: f64, force| most.max(force.abs()));
+    let mut normal = vec![0.0; scene.space.n_coordinates()];
+    for (way, force) in ways {
+        way.iter().for_each(|&(k, c)| normal[k] += force / strongest * c as f64);
+    }
+    Ok((strongest > 0.0).then_some(Wall { normal }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cut::{Cut, connect_cones};
-    use crate::integer::conditional::apply;
-    use crate::integer::rounding::Span;
     use crate::integer::space::{GridNeeds, IntegerSpace};
     use crate::layout::triangle::triangles;
     use seamstress_surface::{HalfedgeData, Metric, TriMesh, Vertex};
@@ -239,34 +232,36 @@ mod tests {
             walls.remove(0)
         }
 
-        /// The pushes on the second and on the third vertex against the first.
-        fn pushes(&self, height: f64) -> [[f64; 2]; 2] {
+        /// By how much the wall's form grows when a vertex moves by one to the right, and when by one up.
+        fn forces(&self, height: f64, vertex: usize) -> [f64; 2] {
             let wall = self.wall(height);
-            let coordinates = self.space.read(&self.layout(height)).0;
-            // Abscissae of 4 and 1; ordinates of 0 and three heights.
-            [[4.0, 0.0], [1.0, 3.0 * height]].map(|place| {
-                place.map(|x| {
-                    let is_there = |row: &Row| (apply(row, &coordinates) - x).abs() < 1e-9;
-                    let found: Vec<usize> =
-                        (0..wall.ways.len()).filter(|&k| is_there(&wall.ways[k])).collect();
-                    assert_eq!(found.len(), 1, "{x}");
-                    wall.pushes[found[0]]
-                })
+            let z = self.layout(height);
+            let form = |z: &[Complex64]| {
+                let coordinates = self.space.read(z).0;
+                dot(&wall.normal, &coordinates)
+            };
+            let corner = self.mesh.halfedges().find(|&h| self.mesh.origin(h).at() == vertex);
+            let wedge = self.cut.wedge[corner.unwrap()] as usize;
+            [Complex64::ONE, Complex64::i()].map(|by| {
+                let mut moved = z.clone();
+                moved[wedge] += by;
+                form(&moved) - form(&z)
             })
         }
     }
 
     #[test]
-    fn a_flat_triangle_of_grid_points_pushes_its_tip_away() {
+    fn a_flat_triangle_of_grid_points_forces_its_tip_away() {
         // Twice the area is 4 y_tip - 1 y_second for these abscissae: multipliers 4 and -1.
-        let [second, tip] = Case::new().pushes(0.01);
-        let off = |push: [f64; 2], y: f64| push[0].hypot(push[1] - y);
+        let case = Case::new();
+        let [second, tip] = [1, 2].map(|vertex| case.forces(0.01, vertex));
+        let off = |force: [f64; 2], y: f64| force[0].hypot(force[1] - y);
         assert!(off(tip, 1.0) < 0.01 && off(second, -0.25) < 0.01, "{second:?} {tip:?}");
     }
 
     #[test]
     fn a_stretched_triangle_pulls() {
-        let [_, tip] = Case::new().pushes(100.0);
+        let tip = Case::new().forces(100.0, 2);
         assert!(tip[1] < -0.9, "{tip:?}");
     }
 
@@ -274,10 +269,9 @@ mod tests {
     fn an_isoline_is_pushed_away_too() {
         // The tip is the only grid point; the side from the first vertex to the second is on an isoline.
         let case = Case::with(&[2], vec![(Halfedge(0), 1)]);
-        let Wall { ways, pushes } = case.wall(0.01);
+        let Wall { normal } = case.wall(0.01);
         let coordinates = case.space.read(&case.layout(0.01)).0;
-        let height = apply(&ways[0], &coordinates);
-        assert!(ways.len() == 1 && (height * pushes[0] - 0.03).abs() < 1e-9, "{ways:?} {pushes:?}");
+        assert!((dot(&normal, &coordinates) - 0.03).abs() < 1e-9, "{normal:?}");
     }
 
     #[test]
@@ -288,11 +282,10 @@ mod tests {
             coordinates.iter().map(|x| x.round() as i64).collect()
         };
         let here = case.space.read(&case.layout(0.01)).0;
-        let (ways, room) = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
-        let span = Span { ways: (0..ways.len()).collect(), room };
-        let has_room = |x: &[i64]| span.has_room(|k| ways[k].at(x));
-        assert!(!has_room(&integers(0.0)) && !has_room(&integers(-1.0)));
+        let half = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
+        let is_beyond = |height: f64| half.allows(half.at(&integers(height)));
+        assert!(!is_beyond(0.0) && !is_beyond(-1.0));
         // the tip a cell higher, then three
-        assert!(has_room(&integers(1.0 / 3.0)) && has_room(&integers(1.0)));
+        assert!(is_beyond(1.0 / 3.0) && is_beyond(1.0));
     }
 }
