@@ -99,9 +99,8 @@ impl State<'_> {
         let (faulty, reflex, _) = self.badness(&quads);
         // As many faults are never better.
         let mut best = ((faulty, reflex, f64::NEG_INFINITY), None);
-        for start in
-            [Start::Spread].into_iter().chain((0..n_scattered as u64).map(Start::Scattered))
-        {
+        let scattered = (0..n_scattered as u64).map(Start::Scattered);
+        for start in std::iter::once(Start::Spread).chain(scattered) {
             self.begin(start, &region, reach.stray);
             self.run(&anywhere, &region, rounds);
             let badness = self.badness(&quads);

@@ -17,7 +17,7 @@ const DETERMINED: f64 = 1e-9;
 
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 ///
-/// The half-spaces follow the constraints in all lists, with their form as first row.
+/// The half-spaces follow the constraints in all lists, with their normal as first row.
 pub(super) struct Fixing<'a> {
     problem: &'a RoundingProblem,
     rows: FlatRows,

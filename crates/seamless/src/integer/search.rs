@@ -58,7 +58,7 @@ struct Search<'a> {
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
     /// `normal . x` of each half-space.
-    forms: Vec<f64>,
+    along: Vec<f64>,
     violated: usize,
     /// What violating each condition counts in a repair: constraints, then faces, then half-spaces.
     weights: Vec<f64>,
@@ -81,7 +81,7 @@ impl<'a> Search<'a> {
         let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
         let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
         let moved = moved(problem);
-        let forms = problem.half_spaces.iter().map(|half| half.at(&x)).collect();
+        let along = problem.half_spaces.iter().map(|half| half.at(&x)).collect();
         let shift = |vector: &Row| {
             problem.half_spaces.iter().map(|half| apply(vector, &half.normal)).collect()
         };
@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
             x,
             gradient,
             values,
-            forms,
+            along,
             violated: 0,
             weights: vec![1.0; n],
             face_of: problem.face_of(),
@@ -128,7 +128,7 @@ impl<'a> Search<'a> {
         match condition {
             Condition::Constraint(i) => self.allows(i, self.values[i]),
             Condition::Face(k) => self.keeps_order(k, &[]),
-            Condition::HalfSpace(k) => self.problem.half_spaces[k].allows(self.forms[k]),
+            Condition::HalfSpace(k) => self.problem.half_spaces[k].allows(self.along[k]),
         }
     }
 
@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
             note(Condition::Face(k), self.keeps_order(k, &changed));
         }
         for (k, half) in self.problem.half_spaces.iter().enumerate() {
-            note(Condition::HalfSpace(k), half.allows(self.forms[k] + self.shift(k, moves)));
+            note(Condition::HalfSpace(k), half.allows(self.along[k] + self.shift(k, moves)));
         }
         (count, weight)
     }
@@ -335,8 +335,8 @@ impl<'a> Search<'a> {
 
     fn apply(&mut self, moves: &[Move]) {
         self.violated = self.violated_after(moves);
-        for k in 0..self.forms.len() {
-            self.forms[k] += self.shift(k, moves);
+        for k in 0..self.along.len() {
+            self.along[k] += self.shift(k, moves);
         }
         for (i, value) in self.changed(moves) {
             self.values[i] = value;
