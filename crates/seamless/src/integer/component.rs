@@ -11,7 +11,7 @@ use super::moves::Moves;
 use super::outcome::{IntegerFailure, IntegerStats};
 use super::rays::ways_to_isolines;
 use super::reduced::{Dense, couple, schur_complement};
-use super::rounding::{Constraint, RoundingProblem, round_constrained, round_greedily};
+use super::rounding::{Constraint, Room, RoundingProblem, round_constrained, round_greedily};
 use super::scene::{Connection, Scene, distinct};
 use super::snap::snap;
 use super::space::{GridNeeds, IntegerSpace};
@@ -265,7 +265,10 @@ impl<'a> IntegerProblem<'a> {
             rounds += 1;
             stats.walls += walls.len();
             let here = self.space.read(&z).0;
-            rounding.half_spaces.extend(walls.iter().map(|wall| wall.beyond(&rounded.x, &here, h)));
+            for wall in &walls {
+                let (ways, room) = wall.beyond(&rounded.x, &here, h);
+                rounding.add(ways, room);
+            }
         };
         let clock = Instant::now();
         let polished = minimize(&mut self.problem, y, &SymmetricDirichlet, &POLISH, watch)?;
@@ -301,17 +304,10 @@ impl<'a> IntegerProblem<'a> {
         };
         let constraints: Vec<Constraint> = short.map(constraint).collect();
         let (matrix, moves) = (self.matrix.clone(), self.moves.clone());
-        let mut rounding = RoundingProblem {
-            matrix,
-            moves,
-            mean,
-            constraints,
-            faces: Vec::new(),
-            half_spaces: Vec::new(),
-        };
+        let mut rounding = RoundingProblem { matrix, moves, mean, constraints, spans: Vec::new() };
         for face in self.faces.iter().filter(|face| face.extent < radius) {
-            rounding
-                .add_face(face.ways.each_ref().map(|c| Constraint::new(c, &self.coordinates, h)));
+            let ways = face.ways.iter().map(|c| Constraint::new(c, &self.coordinates, h));
+            rounding.add(ways.collect(), Room::Face);
         }
         Ok(rounding)
     }

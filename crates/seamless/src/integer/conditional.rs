@@ -103,15 +103,6 @@ impl Conditional {
         (0..self.mean.len()).map(|i| apply(row, self.covariance.row(i))).collect()
     }
 
-    /// Variance of a real form.
-    pub fn variance(&self, row: &[(u32, f64)]) -> f64 {
-        let of = |&(i, c): &(u32, f64)| {
-            let covariance = self.covariance.row(i as usize);
-            c * row.iter().map(|&(k, d)| d * covariance[k as usize]).sum::<f64>()
-        };
-        row.iter().map(of).sum()
-    }
-
     /// Adds a condition whose effect is [`Effect::Free`].
     pub fn fix(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {
         let n = self.covariance.order;

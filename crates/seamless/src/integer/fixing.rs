@@ -1,7 +1,7 @@
 //! Fixing the displacements of connections one by one.
 
 use super::conditional::{Conditional, Effect, Row, apply};
-use super::rounding::{RoundingProblem, is_left_turn};
+use super::rounding::{Constraint, RoundingProblem, Span};
 use rayon::prelude::*;
 
 /// Values tried for a connection, the cheapest first.
@@ -16,13 +16,12 @@ const CHUNK: usize = 512;
 const DETERMINED: f64 = 1e-9;
 
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
-///
-/// The half-spaces follow the constraints in all lists, with their normal as first row.
 pub(super) struct Fixing<'a> {
-    problem: &'a RoundingProblem,
+    constraints: &'a [Constraint],
     rows: FlatRows,
-    /// The face that each constraint is a side of.
-    face_of: Vec<Option<usize>>,
+    spans: &'a [Span],
+    /// The span that each constraint is a way of.
+    span_of: Vec<Option<usize>>,
     now: Conditional,
     means: Vec<[f64; 2]>,
     variances: Vec<f64>,
@@ -30,17 +29,17 @@ pub(super) struct Fixing<'a> {
     determined: f64,
 }
 
-/// The rows of all constraints and half-spaces in one piece, since each fixing reads them all.
+/// The rows of all constraints in one piece, since each fixing reads them all.
 struct FlatRows {
     entries: Vec<(u32, f64)>,
-    /// Where the first row of each begins, and its second.
+    /// Where the first row of each constraint begins, and its second.
     starts: Vec<[usize; 2]>,
 }
 
 impl FlatRows {
-    fn new(problem: &RoundingProblem) -> Self {
+    fn new(constraints: &[Constraint]) -> Self {
         let mut rows = Self { entries: Vec::new(), starts: Vec::new() };
-        for constraint in &problem.constraints {
+        for constraint in constraints {
             let starts = constraint.rows.each_ref().map(|row| {
                 let start = rows.entries.len();
                 rows.entries.extend(row.iter().map(|&(k, c)| (k as u32, c as f64)));
@@ -48,27 +47,11 @@ impl FlatRows {
             });
             rows.starts.push(starts);
         }
-        for half in &problem.half_spaces {
-            let start = rows.entries.len();
-            let entries = (0..).zip(half.normal.iter().copied());
-            rows.entries.extend(entries.filter(|&(_, c)| c != 0.0));
-            rows.starts.push([start, rows.entries.len()]);
-        }
         rows.starts.push([rows.entries.len(); 2]);
         rows
     }
 
-    fn len(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// The variance of both rows of one of them.
-    fn variance(&self, i: usize, now: &Conditional) -> f64 {
-        let ([first, second], [end, _]) = (self.starts[i], self.starts[i + 1]);
-        [first..second, second..end].map(|range| now.variance(&self.entries[range])).iter().sum()
-    }
-
-    /// Both rows of one of them times a vector.
+    /// Both rows of a constraint times a vector.
     fn apply(&self, i: usize, x: &[f64]) -> [f64; 2] {
         let ([first, second], [end, _]) = (self.starts[i], self.starts[i + 1]);
         [first..second, second..end]
@@ -102,15 +85,17 @@ impl Part {
 
 impl<'a> Fixing<'a> {
     pub(super) fn new(problem: &'a RoundingProblem, start: Conditional) -> Self {
-        let rows = FlatRows::new(problem);
-        let means = (0..rows.len()).map(|i| rows.apply(i, start.mean())).collect();
-        let variances = (0..rows.len()).map(|i| rows.variance(i, &start)).collect();
+        let constraints = &problem.constraints;
+        let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
+        let variance =
+            |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
         Self {
-            problem,
-            rows,
-            face_of: problem.face_of(),
-            means,
-            variances,
+            constraints,
+            rows: FlatRows::new(constraints),
+            spans: &problem.spans,
+            span_of: problem.span_of(),
+            means: constraints.iter().map(mean).collect(),
+            variances: constraints.iter().map(variance).collect(),
             determined: DETERMINED * start.mean_variance(),
             now: start,
         }
@@ -123,15 +108,7 @@ impl<'a> Fixing<'a> {
 
     pub(super) fn length(&self, i: usize) -> f64 {
         let [u, v] = self.means[i];
-        u.hypot(v).min(self.problem.constraints[i].length)
-    }
-
-    /// Whether a constraint or half-space allows a value.
-    fn allows(&self, i: usize, value: [f64; 2]) -> bool {
-        match i.checked_sub(self.problem.constraints.len()) {
-            None => self.problem.constraints[i].allows(value),
-            Some(k) => self.problem.half_spaces[k].allows(value[0]),
-        }
+        u.hypot(v).min(self.constraints[i].length)
     }
 
     pub(super) fn is_open(&self, i: usize) -> bool {
@@ -147,14 +124,16 @@ impl<'a> Fixing<'a> {
         // Which connections get determined does not depend on the value.
         let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
         let is_determined: Vec<bool> =
-            (0..self.rows.len()).map(|j| left(j) <= self.determined).collect();
-        // The faces that get determined by it.
-        let is_settled = |ways: &&[usize; 2]| ways.iter().all(|&j| is_determined[j]);
-        let mut settled: Vec<&[usize; 2]> = (0..self.problem.constraints.len())
+            (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
+        // The spans that get determined by it.
+        let is_settled =
+            |k: &usize| is_determined[self.spans[*k].ways.clone()].iter().all(|&is| is);
+        let mut settled: Vec<usize> = (0..self.constraints.len())
             .filter(|&j| is_determined[j] && self.variances[j] > self.determined)
-            .filter_map(|j| self.face_of[j].map(|k| &self.problem.faces[k]))
+            .filter_map(|j| self.span_of[j])
             .filter(is_settled)
             .collect();
+        settled.sort_unstable();
         settled.dedup();
         let is_possible = |value: &[i64; 2]| {
             let errors = self.errors(i, &parts, *value);
@@ -162,24 +141,22 @@ impl<'a> Fixing<'a> {
                 matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
             };
             let at = |j: usize| self.moved(j, &parts, errors);
-            let allows = |j: usize| !is_determined[j] || self.allows(j, at(j));
-            let keeps_order = |ways: &&[usize; 2]| is_left_turn(ways.map(at));
+            let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
+            let leaves_room = |&k: &usize| self.spans[k].has_room(at);
             fits(0)
                 && fits(1)
-                && (0..self.rows.len()).all(allows)
-                && settled.iter().all(keeps_order)
+                && (0..self.constraints.len()).all(allows)
+                && settled.iter().all(leaves_room)
         };
         let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
             return false;
         };
         let errors = self.errors(i, &parts, value);
-        for j in 0..self.rows.len() {
+        for j in 0..self.constraints.len() {
             self.means[j] = self.moved(j, &parts, errors);
             self.variances[j] -= parts[0].settles(j) + parts[1].settles(j);
         }
-        for ((part, row), value) in
-            parts.into_iter().zip(&self.problem.constraints[i].rows).zip(value)
-        {
+        for ((part, row), value) in parts.into_iter().zip(&self.constraints[i].rows).zip(value) {
             if let Effect::Free { reduced, pivot } = part.effect {
                 self.now.fix(row, value, reduced, pivot);
             }
@@ -189,7 +166,7 @@ impl<'a> Fixing<'a> {
 
     /// What fixing the two rows of a connection, one after the other, would do.
     fn parts(&self, i: usize) -> [Part; 2] {
-        let rows = &self.problem.constraints[i].rows;
+        let rows = &self.constraints[i].rows;
         let spread = self.now.spread(&rows[0]);
         let effect = self.now.effect(&rows[0], None);
         let first = self.part(&rows[0], effect, &spread);
@@ -229,7 +206,7 @@ impl<'a> Fixing<'a> {
 
     /// Allowed values of a connection near the one it has, by the energy they cost.
     fn candidates(&self, i: usize, parts: &[Part; 2]) -> Vec<[i64; 2]> {
-        let constraint = &self.problem.constraints[i];
+        let constraint = &self.constraints[i];
         let [u, v] = self.means[i].map(|x| x.round() as i64);
         let cost = |value: [i64; 2]| {
             let errors = self.errors(i, parts, value);

@@ -9,6 +9,7 @@ use super::scene::Connection;
 use super::search::improve;
 use crate::progress::{Cancelled, Watch};
 use seamstress_numerics::NotPositiveDefinite;
+use std::ops::Range;
 
 /// A connection as the rounding sees it: it may neither vanish nor turn around.
 #[derive(Debug, Clone)]
@@ -19,7 +20,7 @@ pub struct Constraint {
     pub start: [f64; 2],
     /// Length of the connection there, grid units.
     pub length: f64,
-    /// Grid units that a walk along the grid from one end to the other has at least.
+    /// Grid units that a walk along the grid from one end to the other has at least; with 0 anything is allowed.
     pub least: i64,
 }
 
@@ -32,10 +33,11 @@ impl Constraint {
         Self { rows, start, length: connection.length / h, least: connection.least }
     }
 
-    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`.
+    /// Whether a displacement with this value is allowed: far enough, and `D . D0 > 0`; any if it may vanish.
     pub fn allows(&self, d: [f64; 2]) -> bool {
-        d[0].abs() + d[1].abs() > self.least as f64 - 0.5
-            && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
+        self.least == 0
+            || d[0].abs() + d[1].abs() > self.least as f64 - 0.5
+                && d[0] * self.start[0] + d[1] * self.start[1] > 1e-9
     }
 
     /// The displacement at integers.
@@ -60,64 +62,80 @@ pub struct RoundingProblem {
     pub mean: Vec<f64>,
     /// Connections that must survive.
     pub constraints: Vec<Constraint>,
-    /// Triangles of the mesh that must keep their orientation, each by the numbers of the constraints that lead from
-    /// its first corner to the second and to the third.
-    pub faces: Vec<[usize; 2]>,
-    /// What the coordinates have to lie in.
-    pub half_spaces: Vec<HalfSpace>,
+    /// What several of them span must leave room for a vertex.
+    pub spans: Vec<Span>,
 }
 
 impl RoundingProblem {
-    /// Adds a face, by the ways from its first corner to the second and to the third.
-    pub fn add_face(&mut self, ways: [Constraint; 2]) {
+    /// Adds points that must leave room, with the ways from the origin to the others.
+    pub fn add(&mut self, ways: Vec<Constraint>, room: Room) {
         let first = self.constraints.len();
         self.constraints.extend(ways);
-        self.faces.push([first, first + 1]);
+        self.spans.push(Span { ways: first..self.constraints.len(), room });
     }
 
-    /// For each constraint the face that it is a side of, by number.
-    pub(super) fn face_of(&self) -> Vec<Option<usize>> {
-        let mut face_of = vec![None; self.constraints.len()];
-        for (k, ways) in self.faces.iter().enumerate() {
-            ways.iter().for_each(|&i| face_of[i] = Some(k));
+    /// For each constraint the span that it is a way of, by number.
+    pub(super) fn span_of(&self) -> Vec<Option<usize>> {
+        let mut span_of = vec![None; self.constraints.len()];
+        for (k, span) in self.spans.iter().enumerate() {
+            span_of[span.ways.clone()].fill(Some(k));
         }
-        face_of
+        span_of
     }
 }
 
-/// Whether a face whose sides have these displacements keeps its orientation.
-pub(super) fn is_left_turn([[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
-    // Twice the area of a triangle of grid points is an integer.
-    a * d - b * c > 0.5
-}
-
-/// The points beyond a wall: `normal . x > more_than`.
+/// What several ways must leave room for, or lead beyond.
 #[derive(Debug, Clone)]
-pub struct HalfSpace {
-    /// One entry per coordinate.
-    pub normal: Vec<f64>,
-    /// The bound.
-    pub more_than: f64,
+pub struct Span {
+    /// The constraints that lead from the origin to the other points, or the ways of a wall, by number.
+    pub ways: Range<usize>,
+    /// What there must be room for.
+    pub room: Room,
 }
 
-impl HalfSpace {
-    /// `normal . x` at integers.
-    pub fn at(&self, x: &[i64]) -> f64 {
-        self.normal.iter().zip(x).map(|(n, &x)| n * x as f64).sum()
-    }
+/// What points must leave room for.
+#[derive(Debug, Clone)]
+pub enum Room {
+    /// A triangle of the mesh, the origin its first corner: the other two are in order around it.
+    Face,
+    /// Collapsing triangles, whose forces the points have to follow further than this; see [`super::walls::Wall`].
+    Wall {
+        /// One for each way.
+        forces: Vec<f64>,
+        /// The sum over all ways of force times the first part of the displacement has to be more.
+        more_than: f64,
+    },
+}
 
-    /// Whether a point with this value of `normal . x` lies in it.
-    pub fn allows(&self, value: f64) -> bool {
-        value > self.more_than
+impl Span {
+    /// Whether there is room when the constraints have these displacements.
+    pub fn has_room(&self, displacement: impl Fn(usize) -> [f64; 2]) -> bool {
+        match &self.room {
+            Room::Wall { forces, more_than } => {
+                along(forces, self.ways.clone().map(displacement)) > *more_than
+            }
+            Room::Face => {
+                let [[a, b], [c, d]] = [0, 1].map(|k| displacement(self.ways.start + k));
+                a * d - b * c > LEFT_TURN
+            }
+        }
     }
 }
+
+/// How far displacements are along forces, in all.
+pub(super) fn along(forces: &[f64], displacements: impl Iterator<Item = [f64; 2]>) -> f64 {
+    displacements.zip(forces).map(|([u, _], force)| force * u).sum()
+}
+
+/// Twice the area of a triangle of grid points is an integer; a positive one is above this.
+const LEFT_TURN: f64 = 0.5;
 
 /// Integers for the coordinates.
 #[derive(Debug, Clone)]
 pub struct Rounded {
     /// One per coordinate.
     pub x: Vec<i64>,
-    /// Connections that collapse or turn around, faces that turn over, and walls that the integers are not beyond.
+    /// Connections that collapse or turn around, and spans without room.
     pub violated: usize,
     /// Restarts it took.
     pub restarts: usize,
@@ -174,16 +192,15 @@ pub fn round_constrained(
     Ok(Rounded { x, violated, restarts })
 }
 
-/// How many conditions do not hold, and the constraints that have a part in it.
+/// How many constraints and spans do not hold, and the constraints that have a part in it.
 fn violations(problem: &RoundingProblem, x: &[i64]) -> (usize, Vec<usize>) {
     let constraints = &problem.constraints;
     let mut involved: Vec<usize> =
         (0..constraints.len()).filter(|&i| !constraints[i].holds(x)).collect();
-    let is_turned = |ways: &&[usize; 2]| !is_left_turn(ways.map(|i| constraints[i].at(x)));
-    let turned: Vec<&[usize; 2]> = problem.faces.iter().filter(is_turned).collect();
-    let missed = problem.half_spaces.iter().filter(|half| !half.allows(half.at(x))).count();
-    let violated = involved.len() + turned.len() + missed;
-    involved.extend(turned.into_iter().flatten());
+    let is_full = |span: &&Span| !span.has_room(|i| constraints[i].at(x));
+    let full: Vec<&Span> = problem.spans.iter().filter(is_full).collect();
+    let violated = involved.len() + full.len();
+    involved.extend(full.into_iter().flat_map(|span| span.ways.clone()));
     (violated, involved)
 }
 
@@ -246,7 +263,7 @@ mod tests {
         let constraints = connections.iter().map(|c| Constraint::new(c, &mean, 1.0)).collect();
         let matrix = Dense { order: 4, values };
         let moves = Moves::reduced(&matrix, &[0.0; 4]);
-        RoundingProblem { matrix, moves, mean, constraints, faces: vec![], half_spaces: vec![] }
+        RoundingProblem { matrix, moves, mean, constraints, spans: vec![] }
     }
 
     fn rounded(problem: &RoundingProblem) -> Rounded {
@@ -298,7 +315,7 @@ mod tests {
             };
             problem.constraints =
                 [0, 1].map(|k| Constraint::new(&side(k), &problem.mean, 1.0)).to_vec();
-            problem.faces = vec![[0, 1]];
+            problem.spans = vec![Span { ways: 0..2, room: Room::Face }];
             let rounded = rounded(&problem);
             let [a, b] = [0, 1].map(|k| problem.constraints[k].at(&rounded.x));
             let cross = a[0] * b[1] - a[1] * b[0];
@@ -311,11 +328,21 @@ mod tests {
         for seed in 0..40 {
             let mut problem = problem(seed);
             let free = rounded(&problem);
-            let mut half = HalfSpace { normal: vec![0.6, 0.8, 0.0, 0.0], more_than: 0.0 };
-            half.more_than = half.at(&free.x) + 0.25;
-            problem.half_spaces.push(half.clone());
+            let way = problem.constraints[0].clone();
+            let forces = vec![0.6, 0.8];
+            let along = |x: &[i64]| {
+                let [u, v] = way.at(x);
+                forces[0] * u + forces[1] * v
+            };
+            let more_than = along(&free.x) + 0.25;
+            let part = |row: &Row| {
+                let rows = [row.clone(), Row::new()];
+                Constraint { rows, least: 0, ..way.clone() }
+            };
+            let room = Room::Wall { forces: forces.clone(), more_than };
+            problem.add(way.rows.iter().map(part).collect(), room);
             let rounded = rounded(&problem);
-            assert!(rounded.violated == 0 && half.allows(half.at(&rounded.x)), "seed {seed}");
+            assert!(rounded.violated == 0 && along(&rounded.x) > more_than, "seed {seed}");
         }
     }
 

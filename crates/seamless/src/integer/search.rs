@@ -2,7 +2,7 @@
 
 use super::conditional::{Row, apply};
 use super::reduced::Dense;
-use super::rounding::{RoundingProblem, is_left_turn};
+use super::rounding::RoundingProblem;
 use crate::progress::{Cancelled, Watch};
 
 /// Most moves in all.
@@ -14,17 +14,6 @@ const MOST_REPAIRS: usize = 1000;
 /// What energy counts in a repair against a violated constraint of weight one; a step along a usual
 /// coordinate costs about one.
 const ENERGY_WEIGHT: f64 = 0.05;
-
-/// What integers have to satisfy.
-#[derive(Debug, Clone, Copy)]
-enum Condition {
-    /// A connection, by number.
-    Constraint(usize),
-    /// A face of three grid points.
-    Face(usize),
-    /// A wall to be beyond.
-    HalfSpace(usize),
-}
 
 /// A vector of the basis and how often it is added, 1 or -1.
 type Move = (usize, i64);
@@ -57,17 +46,13 @@ struct Search<'a> {
     gradient: Vec<f64>,
     /// Displacement of each constraint.
     values: Vec<[i64; 2]>,
-    /// `normal . x` of each half-space.
-    along: Vec<f64>,
     violated: usize,
-    /// What violating each condition counts in a repair: constraints, then faces, then half-spaces.
+    /// What violating each constraint counts in a repair, and after these each span.
     weights: Vec<f64>,
-    /// The face that each constraint is a side of.
-    face_of: Vec<Option<usize>>,
+    /// The span that each constraint is a way of.
+    span_of: Vec<Option<usize>>,
     /// For each vector of the basis the constraints it moves, and how.
     moved: Vec<Vec<(usize, [i64; 2])>>,
-    /// For each vector of the basis how far it leads along the normals of the half-spaces.
-    shifts: Vec<Vec<f64>>,
     /// A fall of the energy that counts.
     gain: f64,
 }
@@ -81,72 +66,29 @@ impl<'a> Search<'a> {
         let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
         let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
         let moved = moved(problem);
-        let along = problem.half_spaces.iter().map(|half| half.at(&x)).collect();
-        let shift = |vector: &Row| {
-            problem.half_spaces.iter().map(|half| apply(vector, &half.normal)).collect()
-        };
-        let shifts = basis.vectors.iter().map(shift).collect();
+        let span_of = problem.span_of();
         let gain = 1e-6 * energy.abs() + 1e-12;
-        let n = problem.constraints.len() + problem.faces.len() + problem.half_spaces.len();
-        let mut search = Self {
-            problem,
-            matrix: &basis.matrix,
-            x,
-            gradient,
-            values,
-            along,
-            violated: 0,
-            weights: vec![1.0; n],
-            face_of: problem.face_of(),
-            moved,
-            shifts,
-            gain,
-        };
-        search.violated = search.conditions().filter(|&c| !search.holds(c)).count();
+        let matrix = &basis.matrix;
+        let weights = vec![1.0; problem.constraints.len() + problem.spans.len()];
+        let violated = 0;
+        let mut search =
+            Self { problem, matrix, x, gradient, values, violated, weights, span_of, moved, gain };
+        let every = 0..problem.constraints.len();
+        search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
+            + (0..problem.spans.len()).filter(|&k| !search.has_room(k, &[])).count();
         search
-    }
-
-    /// All conditions.
-    fn conditions(&self) -> impl Iterator<Item = Condition> + use<> {
-        let RoundingProblem { constraints, faces, half_spaces, .. } = self.problem;
-        let constraints = (0..constraints.len()).map(Condition::Constraint);
-        let faces = (0..faces.len()).map(Condition::Face);
-        constraints.chain(faces).chain((0..half_spaces.len()).map(Condition::HalfSpace))
-    }
-
-    /// The place of a condition among all.
-    fn number(&self, condition: Condition) -> usize {
-        let (constraints, faces) = (self.problem.constraints.len(), self.problem.faces.len());
-        match condition {
-            Condition::Constraint(i) => i,
-            Condition::Face(k) => constraints + k,
-            Condition::HalfSpace(k) => constraints + faces + k,
-        }
-    }
-
-    fn holds(&self, condition: Condition) -> bool {
-        match condition {
-            Condition::Constraint(i) => self.allows(i, self.values[i]),
-            Condition::Face(k) => self.keeps_order(k, &[]),
-            Condition::HalfSpace(k) => self.problem.half_spaces[k].allows(self.along[k]),
-        }
     }
 
     fn allows(&self, i: usize, value: [i64; 2]) -> bool {
         self.problem.constraints[i].allows(value.map(|x| x as f64))
     }
 
-    /// Whether a face keeps its orientation when some constraints, in ascending order, take other values.
-    fn keeps_order(&self, face: usize, changed: &[(usize, [i64; 2])]) -> bool {
-        is_left_turn(self.problem.faces[face].map(|i| {
+    /// Whether a span leaves room when some constraints, in ascending order, take other values.
+    fn has_room(&self, span: usize, changed: &[(usize, [i64; 2])]) -> bool {
+        self.problem.spans[span].has_room(|i| {
             let new = changed.binary_search_by_key(&i, |&(j, _)| j).map(|at| changed[at].1);
             new.unwrap_or(self.values[i]).map(|x| x as f64)
-        }))
-    }
-
-    /// How far some moves lead along the normal of a half-space.
-    fn shift(&self, k: usize, moves: &[Move]) -> f64 {
-        moves.iter().map(|&(vector, step)| step as f64 * self.shifts[vector][k]).sum()
+        })
     }
 
     /// Change of the energy by a single move.
@@ -168,34 +110,29 @@ impl<'a> Search<'a> {
         steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
     }
 
-    /// Violated conditions after some moves, and the change of their weight.
+    /// Violated constraints and spans after some moves, and the change of their weight.
     fn after(&self, moves: &[Move]) -> (usize, f64) {
         let changed = self.changed(moves);
-        let mut faces: Vec<usize> = changed.iter().filter_map(|(i, _)| self.face_of[*i]).collect();
-        faces.sort_unstable();
-        faces.dedup();
+        let mut spans: Vec<usize> = changed.iter().filter_map(|(i, _)| self.span_of[*i]).collect();
+        spans.sort_unstable();
+        spans.dedup();
         let (mut count, mut weight) = (self.violated, 0.0);
-        let mut note = |condition: Condition, is_good: bool| {
-            let by = self.weights[self.number(condition)];
-            match (self.holds(condition), is_good) {
-                (true, false) => (count, weight) = (count + 1, weight + by),
-                (false, true) => (count, weight) = (count - 1, weight - by),
-                _ => {}
-            }
+        let mut note = |was_good: bool, is_good: bool, by: f64| match (was_good, is_good) {
+            (true, false) => (count, weight) = (count + 1, weight + by),
+            (false, true) => (count, weight) = (count - 1, weight - by),
+            _ => {}
         };
         for &(i, value) in &changed {
-            note(Condition::Constraint(i), self.allows(i, value));
+            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[i]);
         }
-        for k in faces {
-            note(Condition::Face(k), self.keeps_order(k, &changed));
-        }
-        for (k, half) in self.problem.half_spaces.iter().enumerate() {
-            note(Condition::HalfSpace(k), half.allows(self.along[k] + self.shift(k, moves)));
+        for k in spans {
+            let weight = self.weights[self.values.len() + k];
+            note(self.has_room(k, &[]), self.has_room(k, &changed), weight);
         }
         (count, weight)
     }
 
-    /// Violated conditions after some moves.
+    /// Violated constraints and spans after some moves.
     fn violated_after(&self, moves: &[Move]) -> usize {
         self.after(moves).0
     }
@@ -217,8 +154,8 @@ impl<'a> Search<'a> {
     /// # Source
     /// Morris 1993, *The breakout method for escaping from local minima*.
     fn repair(&mut self, watch: &mut Watch<'_, '_>) -> Result<bool, Cancelled> {
+        let (n, all) = (self.problem.constraints.len(), self.problem.spans.len());
         let touching = self.touching();
-        let conditions: Vec<Condition> = self.conditions().collect();
         let mut best = (self.violated, self.x.clone());
         let mut at = 0;
         for _ in 0..MOST_REPAIRS {
@@ -226,12 +163,23 @@ impl<'a> Search<'a> {
             if self.violated == 0 {
                 return Ok(true);
             }
-            let (before, after) = conditions.split_at(at.min(conditions.len()));
-            let next = after.iter().chain(before).find(|&&condition| !self.holds(condition));
-            let Some(&target) = next else { break };
-            let number = self.number(target);
-            at = number + 1;
-            let vectors = &touching[number];
+            let is_bad = |&i: &usize| match i.checked_sub(n) {
+                None => !self.allows(i, self.values[i]),
+                Some(k) => !self.has_room(k, &[]),
+            };
+            let next = (0..n + all).map(|k| (at + k) % (n + all)).find(is_bad);
+            let Some(target) = next else { break };
+            at = target + 1;
+            let vectors: Vec<usize> = match target.checked_sub(n) {
+                None => touching[target].clone(),
+                Some(k) => {
+                    let ways = self.problem.spans[k].ways.clone();
+                    let mut all: Vec<usize> = ways.flat_map(|i| touching[i].clone()).collect();
+                    all.sort_unstable();
+                    all.dedup();
+                    all
+                }
+            };
             let worth = vectors
                 .iter()
                 .flat_map(|&k| [(k, 1), (k, -1)])
@@ -243,29 +191,18 @@ impl<'a> Search<'a> {
                         best = (self.violated, self.x.clone());
                     }
                 }
-                _ => self.weights[number] += 1.0,
+                _ => self.weights[target] += 1.0,
             }
         }
         self.x = best.1;
         Ok(self.violated == 0)
     }
 
-    /// For each condition the vectors of the basis that move it.
+    /// For each constraint the vectors of the basis that move it.
     fn touching(&self) -> Vec<Vec<usize>> {
-        let mut touching = vec![Vec::new(); self.weights.len()];
-        for (vector, moved) in self.moved.iter().enumerate() {
-            moved.iter().for_each(|&(i, _)| touching[i].push(vector));
-            for (k, &shift) in self.shifts[vector].iter().enumerate() {
-                if shift != 0.0 {
-                    touching[self.number(Condition::HalfSpace(k))].push(vector);
-                }
-            }
-        }
-        for (k, ways) in self.problem.faces.iter().enumerate() {
-            let mut vectors = ways.map(|i| touching[i].clone()).concat();
-            vectors.sort_unstable();
-            vectors.dedup();
-            touching[self.number(Condition::Face(k))] = vectors;
+        let mut touching = vec![Vec::new(); self.problem.constraints.len()];
+        for (k, moved) in self.moved.iter().enumerate() {
+            moved.iter().for_each(|&(i, _)| touching[i].push(k));
         }
         touching
     }
@@ -288,14 +225,16 @@ impl<'a> Search<'a> {
         moves.into_iter().find(|&(cost, m)| self.is_better(cost, &[m])).map(|(_, m)| vec![m])
     }
 
-    /// The vectors of the basis that move a violated condition.
+    /// The coordinates that move a violated constraint, or a span without room.
     fn involved(&self) -> Vec<bool> {
-        let mut involved = vec![false; self.x.len()];
-        let touching = self.touching();
-        for condition in self.conditions().filter(|&condition| !self.holds(condition)) {
-            touching[self.number(condition)].iter().for_each(|&k| involved[k] = true);
+        let constraints = 0..self.problem.constraints.len();
+        let mut is_bad: Vec<bool> = constraints.map(|i| !self.allows(i, self.values[i])).collect();
+        for (k, span) in self.problem.spans.iter().enumerate() {
+            if !self.has_room(k, &[]) {
+                is_bad[span.ways.clone()].fill(true);
+            }
         }
-        involved
+        self.moved.iter().map(|moved| moved.iter().any(|(i, _)| is_bad[*i])).collect()
     }
 
     /// The best pair among the cheapest ones; while constraints are violated, of those that touch one.
@@ -335,9 +274,6 @@ impl<'a> Search<'a> {
 
     fn apply(&mut self, moves: &[Move]) {
         self.violated = self.violated_after(moves);
-        for k in 0..self.along.len() {
-            self.along[k] += self.shift(k, moves);
-        }
         for (i, value) in self.changed(moves) {
             self.values[i] = value;
         }

@@ -3,9 +3,8 @@
 use super::conditional::Row;
 use super::gauss::{Gauss, Overflow, add_scaled};
 use super::isolines::{part, tied};
-use super::reduced::dot;
-use super::rounding::HalfSpace;
-use super::scene::{Carry, Scene};
+use super::rounding::{Constraint, Room, along};
+use super::scene::{Carry, Connection, Scene};
 use crate::layout::energy::{ProjectedHessian, SymmetricDirichlet};
 use crate::layout::triangle::{Triangle, at_corner};
 use crate::quarter::turn;
@@ -27,18 +26,31 @@ const LEAST_WAY: f64 = 0.25;
 /// isolines alone: these must move along the forces. It is a cut by Farkas' lemma, its multipliers found by a barrier.
 #[derive(Debug, Clone)]
 pub struct Wall {
-    /// The forces on the coordinates of the space; the strongest on a grid point or isoline is one.
-    pub normal: Vec<f64>,
+    /// What the coordinates of grid points and the levels of isolines are more than the first one, as exact forms in
+    /// the coordinates of the space.
+    pub ways: Vec<Row>,
+    /// The force on each of these, the strongest one.
+    pub forces: Vec<f64>,
 }
 
 impl Wall {
-    /// Where a rounding is beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
+    /// What keeps a rounding beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
     /// layout at the wall and grid size `h`, both in the layout's units.
-    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> HalfSpace {
-        let mut half = HalfSpace { normal: self.normal.clone(), more_than: 0.0 };
-        let (at_x, at_here) = (half.at(x), dot(&self.normal, here) / h);
-        half.more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_WAY);
-        half
+    ///
+    /// The condition is one half-space. Its ways are told apart so that the rounding can fix them one by one, after the
+    /// connections shorter than a cell: with the half-space alone, which nothing heeds before it is determined, fewer
+    /// roundings succeeded.
+    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
+        let way = |row: &Row| {
+            // It may vanish.
+            let rows = [row.clone(), Row::new()];
+            Constraint::new(&Connection { length: 0.0, rows, least: 0 }, here, h)
+        };
+        let ways: Vec<Constraint> = self.ways.iter().map(way).collect();
+        let at_x = along(&self.forces, ways.iter().map(|way| way.at(x)));
+        let at_here = along(&self.forces, ways.iter().map(|way| way.start));
+        let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_WAY);
+        (ways, Room::Wall { forces: self.forces.clone(), more_than })
     }
 }
 
@@ -81,7 +93,7 @@ fn forces(t: &Triangle, z: &[Complex64]) -> [Complex64; 3] {
 
 /// What belongs to no cluster yet.
 struct Open {
-    /// Triangles that push.
+    /// Triangles with a force.
     faces: FaceData<bool>,
     /// Ordinary vertices.
     vertices: VertexData<bool>,
@@ -165,17 +177,16 @@ fn wall(
     }
     ways.retain(|row, _| !row.is_empty());
     let strongest = ways.values().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let mut normal = vec![0.0; scene.space.n_coordinates()];
-    for (way, force) in ways {
-        way.iter().for_each(|&(k, c)| normal[k] += force / strongest * c as f64);
-    }
-    Ok((strongest > 0.0).then_some(Wall { normal }))
+    let (ways, forces) = ways.into_iter().map(|(row, force)| (row, force / strongest)).unzip();
+    Ok((strongest > 0.0).then_some(Wall { ways, forces }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cut::{Cut, connect_cones};
+    use crate::integer::conditional::apply;
+    use crate::integer::rounding::Span;
     use crate::integer::space::{GridNeeds, IntegerSpace};
     use crate::layout::triangle::triangles;
     use seamstress_surface::{HalfedgeData, Metric, TriMesh, Vertex};
@@ -232,36 +243,34 @@ mod tests {
             walls.remove(0)
         }
 
-        /// By how much the wall's form grows when a vertex moves by one to the right, and when by one up.
-        fn forces(&self, height: f64, vertex: usize) -> [f64; 2] {
+        /// The forces on the second and on the third vertex against the first.
+        fn forces(&self, height: f64) -> [[f64; 2]; 2] {
             let wall = self.wall(height);
-            let z = self.layout(height);
-            let form = |z: &[Complex64]| {
-                let coordinates = self.space.read(z).0;
-                dot(&wall.normal, &coordinates)
-            };
-            let corner = self.mesh.halfedges().find(|&h| self.mesh.origin(h).at() == vertex);
-            let wedge = self.cut.wedge[corner.unwrap()] as usize;
-            [Complex64::ONE, Complex64::i()].map(|by| {
-                let mut moved = z.clone();
-                moved[wedge] += by;
-                form(&moved) - form(&z)
+            let coordinates = self.space.read(&self.layout(height)).0;
+            // Abscissae of 4 and 1; ordinates of 0 and three heights.
+            [[4.0, 0.0], [1.0, 3.0 * height]].map(|place| {
+                place.map(|x| {
+                    let is_there = |row: &Row| (apply(row, &coordinates) - x).abs() < 1e-9;
+                    let found: Vec<usize> =
+                        (0..wall.ways.len()).filter(|&k| is_there(&wall.ways[k])).collect();
+                    assert_eq!(found.len(), 1, "{x}");
+                    wall.forces[found[0]]
+                })
             })
         }
     }
 
     #[test]
-    fn a_flat_triangle_of_grid_points_forces_its_tip_away() {
+    fn a_flat_triangle_of_grid_points_pushes_its_tip_away() {
         // Twice the area is 4 y_tip - 1 y_second for these abscissae: multipliers 4 and -1.
-        let case = Case::new();
-        let [second, tip] = [1, 2].map(|vertex| case.forces(0.01, vertex));
+        let [second, tip] = Case::new().forces(0.01);
         let off = |force: [f64; 2], y: f64| force[0].hypot(force[1] - y);
         assert!(off(tip, 1.0) < 0.01 && off(second, -0.25) < 0.01, "{second:?} {tip:?}");
     }
 
     #[test]
     fn a_stretched_triangle_pulls() {
-        let tip = Case::new().forces(100.0, 2);
+        let [_, tip] = Case::new().forces(100.0);
         assert!(tip[1] < -0.9, "{tip:?}");
     }
 
@@ -269,9 +278,10 @@ mod tests {
     fn an_isoline_is_pushed_away_too() {
         // The tip is the only grid point; the side from the first vertex to the second is on an isoline.
         let case = Case::with(&[2], vec![(Halfedge(0), 1)]);
-        let Wall { normal } = case.wall(0.01);
+        let Wall { ways, forces } = case.wall(0.01);
         let coordinates = case.space.read(&case.layout(0.01)).0;
-        assert!((dot(&normal, &coordinates) - 0.03).abs() < 1e-9, "{normal:?}");
+        let height = apply(&ways[0], &coordinates);
+        assert!(ways.len() == 1 && (height * forces[0] - 0.03).abs() < 1e-9, "{ways:?} {forces:?}");
     }
 
     #[test]
@@ -282,10 +292,11 @@ mod tests {
             coordinates.iter().map(|x| x.round() as i64).collect()
         };
         let here = case.space.read(&case.layout(0.01)).0;
-        let half = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
-        let is_beyond = |height: f64| half.allows(half.at(&integers(height)));
-        assert!(!is_beyond(0.0) && !is_beyond(-1.0));
+        let (ways, room) = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
+        let span = Span { ways: 0..ways.len(), room };
+        let has_room = |x: &[i64]| span.has_room(|k| ways[k].at(x));
+        assert!(!has_room(&integers(0.0)) && !has_room(&integers(-1.0)));
         // the tip a cell higher, then three
-        assert!(is_beyond(1.0 / 3.0) && is_beyond(1.0));
+        assert!(has_room(&integers(1.0 / 3.0)) && has_room(&integers(1.0)));
     }
 }
