@@ -1,9 +1,10 @@
 //! Seamless maps of meshes, made once and kept.
 
 use crate::meshes::Mesh;
-use seamstress::{GridSize, MapOptions, SeamlessMap, Tolerance, make_map};
 use seamstress_io::{MapObj, read_mesh, write_map_obj};
-use seamstress_surface::Metric;
+use seamstress_mesh::Metric;
+use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, make_map};
+use seamstress_quantize::GridSize;
 use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};

@@ -1,8 +1,8 @@
 //! Meshes to measure.
 
 use seamstress_io::{Format, read_mesh};
-use seamstress_surface::TriMesh;
-use seamstress_surface::soup::{self, TriangleSoup};
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::soup::{self, TriangleSoup};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,7 @@ use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
 use crate::verdict;
-use seamstress_surface::TriMesh;
+use seamstress_mesh::TriMesh;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Lists of faults and violations, shortened for people and complete for programs.
 
-use seamstress::Violation;
-use seamstress_surface::soup::{Fault, Severity};
+use seamstress_mesh::soup::{Fault, Severity};
+use seamstress_parametrize::Violation;
 use serde_json::{Value, json};
 use std::fmt::Display;
 use std::mem::{Discriminant, discriminant};

@@ -3,13 +3,15 @@
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
 use crate::report;
-use seamstress::map::edges_along_axes;
-use seamstress::{Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations};
 use seamstress_io::{read_pairs, read_sharp};
-use seamstress_surface::features::{
+use seamstress_mesh::features::{
     EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
 };
-use seamstress_surface::{Halfedge, Metric, TriMesh, Vertex};
+use seamstress_mesh::{Halfedge, Metric, TriMesh, Vertex};
+use seamstress_parametrize::map::edges_along_axes;
+use seamstress_parametrize::{
+    Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations,
+};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fmt;

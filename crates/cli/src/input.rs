@@ -5,8 +5,8 @@ use crate::map_file::Triangles;
 use crate::outcome::Failure;
 use crate::text::{self, counted};
 use seamstress_io::{Format, PolygonMesh, Polygons, read_mesh};
-use seamstress_surface::TriMesh;
-use seamstress_surface::soup::{
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::soup::{
     self, Facts, Fault, Severity, TriangleSoup, Triangulation, TriangulationNotes,
 };
 use std::mem::discriminant;

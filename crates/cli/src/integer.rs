@@ -11,14 +11,14 @@ use crate::pictures;
 use crate::report::{self, Cost, VERSION};
 use crate::summary;
 use crate::text::{counted, figure, row};
-use seamstress::integer::{IntegerCertificate, IntegerStats};
-use seamstress::map::compare_source;
-use seamstress::{
-    GridSize, IntegerError, IntegerOptions, IntegerSolution, MapError, MapOptions, SeamlessMap,
-    Violations, make_aligned_map, to_aligned_integer_map,
-};
 use seamstress_io::{MapObj, write_map_obj};
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::map::compare_source;
+use seamstress_parametrize::{MapError, MapOptions, SeamlessMap, Violations, make_aligned_map};
+use seamstress_quantize::{
+    GridSize, IntegerError, IntegerOptions, IntegerSolution, to_aligned_integer_map,
+};
+use seamstress_quantize::{IntegerCertificate, IntegerStats};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;

@@ -8,7 +8,7 @@ use crate::report::Cost;
 use crate::stop::{Abandoned, Stop, supervise};
 use crate::system;
 use crate::text;
-use seamstress::Progress;
+use seamstress_parametrize::Progress;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

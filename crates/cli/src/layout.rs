@@ -13,10 +13,10 @@ use crate::stretches::read_stretches;
 use crate::summary;
 use crate::text::{counted, figure, row};
 use crate::writers::{Written, write_map};
-use seamstress::{
+use seamstress_mesh::TriMesh;
+use seamstress_parametrize::{
     Anisotropy, ConicStats, MapError, Progress, Relayout, SeamlessMap, lay_out_disk, relayout,
 };
-use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;

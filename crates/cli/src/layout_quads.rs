@@ -8,13 +8,13 @@ use crate::quad_file::read_quads;
 use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, row};
-use seamstress::quality::{Distortion, distortion};
-use seamstress::{SeamlessMap, Tolerance};
 use seamstress_io::{MapObj, write_map_obj};
+use seamstress_mesh::Metric;
+use seamstress_mesh::soup::TriangleSoup;
+use seamstress_parametrize::quality::{Distortion, distortion};
+use seamstress_parametrize::{SeamlessMap, Tolerance};
 use seamstress_quads::QuadMesh;
 use seamstress_quads::layout::{QuadLayout, lay_out_conformal, lay_out_squares};
-use seamstress_surface::Metric;
-use seamstress_surface::soup::TriangleSoup;
 use serde_json::json;
 use std::io::Write;
 

@@ -5,9 +5,9 @@ use crate::report;
 use crate::summary;
 use crate::text::{counted, row};
 use crate::writers::Written;
-use seamstress::map::Cone;
-use seamstress::quality::Distortion;
-use seamstress::{
+use seamstress_parametrize::map::Cone;
+use seamstress_parametrize::quality::Distortion;
+use seamstress_parametrize::{
     ComponentStats, FieldMap, MapSolution, SeamlessMap, UncertifiedMap, Violation, Violations,
 };
 use serde_json::{Value, json};

@@ -13,10 +13,10 @@ use crate::start::read_start;
 use crate::summary;
 use crate::text::row;
 use crate::writers::{write_cones, write_map};
-use seamstress::{
+use seamstress_mesh::TriMesh;
+use seamstress_parametrize::{
     FieldMapOptions, MapError, Start, make_aligned_map, make_field_map, make_map_from,
 };
-use seamstress_surface::TriMesh;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -2,10 +2,10 @@
 
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
-use seamstress::Violation;
-use seamstress::map::compare_source;
 use seamstress_io::{PolygonMesh, read_mesh};
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
+use seamstress_parametrize::Violation;
+use seamstress_parametrize::map::compare_source;
 use std::path::Path;
 
 /// A map as read: triangles with a UV per corner.

@@ -9,9 +9,9 @@ use crate::pictures;
 use crate::report::{self, VERSION};
 use crate::summary;
 use crate::text::{self, counted, figure, row};
-use seamstress::quality::{Aggregate, Measure, SingularValues, Summary, measure_all};
-use seamstress::{Objective, SeamlessMap};
-use seamstress_surface::Metric;
+use seamstress_mesh::Metric;
+use seamstress_parametrize::quality::{Aggregate, Measure, SingularValues, Summary, measure_all};
+use seamstress_parametrize::{Objective, SeamlessMap};
 use serde_json::{Value, json};
 use std::io::Write;
 

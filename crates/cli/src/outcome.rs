@@ -1,8 +1,9 @@
 //! How a run ends: exit codes, and failures with their messages.
 
-use seamstress::{IntegerError, MapError, Violations};
 use seamstress_io::{ReadError, WriteError};
+use seamstress_parametrize::{MapError, Violations};
 use seamstress_quads::QuadFaults;
+use seamstress_quantize::IntegerError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;

@@ -3,14 +3,14 @@
 use crate::args::TextureArgs;
 use crate::features::{AlignedFeatures, Features};
 use crate::text::figure;
-use seamstress::SeamlessMap;
-use seamstress::quality::Summary;
+use seamstress_mesh::soup::{self, TriangleSoup};
+use seamstress_parametrize::SeamlessMap;
+use seamstress_parametrize::quality::Summary;
 use seamstress_quads::{IrregularVertex, QuadMesh};
 use seamstress_render::{
     HeatMap, Image, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout,
     render_surface,
 };
-use seamstress_surface::soup::{self, TriangleSoup};
 
 /// The files, in the order of [`draw`].
 pub(crate) const NAMES: [&str; 3] = ["front.png", "back.png", "layout.png"];

@@ -1,7 +1,7 @@
 //! Progress bars on standard error.
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use seamstress::{Progress, Stage};
+use seamstress_parametrize::{Progress, Stage};
 use std::io::IsTerminal;
 use std::time::Duration;
 

@@ -11,12 +11,12 @@ use crate::shape::orientation_row;
 use crate::summary;
 use crate::text::{self, counted, figure, row};
 use seamstress_io::{PolygonMesh, read_mesh};
+use seamstress_mesh::soup;
 use seamstress_quads::quality::{
     Distance, Orientation, QuadQuality, SurfaceDistance, angle_deviations, measure,
     surface_distance,
 };
 use seamstress_render::HeatMap;
-use seamstress_surface::soup;
 use std::io::Write;
 use std::path::Path;
 

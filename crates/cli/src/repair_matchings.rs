@@ -9,13 +9,13 @@ use crate::report::{self, VERSION};
 use crate::start::{read_corner_uvs, read_cross_field};
 use crate::summary;
 use crate::text::{counted, figure, row};
-use seamstress::consistency::{
+use seamstress_io::{MatchingRow, write_matching, write_singularities};
+use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet,
     SeamMatching, make_consistent, transitions,
 };
-use seamstress::progress::{Stage, Watch};
-use seamstress_io::{MatchingRow, write_matching, write_singularities};
-use seamstress_surface::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_parametrize::progress::{Stage, Watch};
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

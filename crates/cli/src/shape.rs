@@ -3,11 +3,11 @@
 use crate::input::LoadedMesh;
 use crate::outcome::Failure;
 use crate::text::{self, counted, row};
+use seamstress_mesh::TriMesh;
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     Extraction, MendOptions, QuadMesh, SmoothError, SmoothOptions, mend, smooth,
 };
-use seamstress_surface::TriMesh;
 use serde_json::{Value, json};
 
 /// What is done to the vertices of extracted quads.

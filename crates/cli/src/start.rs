@@ -3,13 +3,13 @@
 use crate::args::{Method, StartArgs};
 use crate::map_file::MapFile;
 use crate::outcome::Failure;
-use seamstress::field::{
+use seamstress_io::{Cones, read_cones, read_field, read_matching};
+use seamstress_mesh::{HalfedgeData, Metric, TriMesh};
+use seamstress_parametrize::field::{
     ConePrescription, CrossField, frames_from_directions, matchings_from_rows, residual_field,
 };
-use seamstress::map::compare_source;
-use seamstress::{Start, Violations};
-use seamstress_io::{Cones, read_cones, read_field, read_matching};
-use seamstress_surface::{HalfedgeData, Metric, TriMesh};
+use seamstress_parametrize::map::compare_source;
+use seamstress_parametrize::{Start, Violations};
 use std::fmt::Display;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Files of wanted stretches.
 
 use crate::outcome::Failure;
-use seamstress::Stretch;
+use seamstress_parametrize::Stretch;
 use std::fs;
 use std::path::Path;
 

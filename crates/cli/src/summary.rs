@@ -4,10 +4,10 @@ use crate::features::{AlignedFeatures, Features};
 use crate::input::LoadedMesh;
 use crate::report::{Cost, cones_by_index, tau};
 use crate::text::{counted, figure, row};
-use seamstress::mixed_integer::MixedIntegerStats;
-use seamstress::quality::Distortion;
-use seamstress::{Alignment, ComponentStats, SeamlessMap};
-use seamstress_surface::features::NodeKind;
+use seamstress_mesh::features::NodeKind;
+use seamstress_parametrize::mixed_integer::MixedIntegerStats;
+use seamstress_parametrize::quality::Distortion;
+use seamstress_parametrize::{Alignment, ComponentStats, SeamlessMap};
 
 /// Released features that are listed; the report has them all.
 const SHOWN_RELEASED: usize = 10;

@@ -6,11 +6,13 @@ use crate::map_file::MapFile;
 use crate::report;
 use crate::summary;
 use crate::text::{counted, row};
-use seamstress::map::compare_source;
-use seamstress::quality::{Distortion, distortion};
-use seamstress::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
-use seamstress_surface::soup::TriangleSoup;
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_mesh::soup::TriangleSoup;
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::map::compare_source;
+use seamstress_parametrize::quality::{Distortion, distortion};
+use seamstress_parametrize::{
+    Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations,
+};
 use serde_json::{Value, json};
 use std::path::Path;
 

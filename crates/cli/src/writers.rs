@@ -3,10 +3,10 @@
 use crate::input::LoadedMesh;
 use crate::report::{self, VERSION};
 use crate::text::{counted, figure};
-use seamstress::SeamlessMap;
-use seamstress::map::Cone;
-use seamstress::quality::Distortion;
 use seamstress_io::{MapObj, write_map_obj, write_singularities};
+use seamstress_parametrize::SeamlessMap;
+use seamstress_parametrize::map::Cone;
+use seamstress_parametrize::quality::Distortion;
 use std::io::Write;
 
 /// A map, certified or not, as it is written.

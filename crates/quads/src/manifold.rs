@@ -1,8 +1,8 @@
 //! Integer maps fine enough for their quads to be a manifold.
 
 use crate::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, QuadFaults, extract};
-use seamstress::{GridSize, IntegerSolution};
-use seamstress_surface::TriMesh;
+use seamstress_mesh::TriMesh;
+use seamstress_quantize::{GridSize, IntegerSolution};
 
 /// An integer map and its quads, an oriented manifold.
 #[derive(Debug)]
@@ -86,7 +86,8 @@ fn finer(size: GridSize, factor: f64) -> GridSize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use seamstress::{IntegerOptions, SeamlessMap, Tolerance, to_integer_map};
+    use seamstress_parametrize::{SeamlessMap, Tolerance};
+    use seamstress_quantize::{IntegerOptions, to_integer_map};
     use seamstress_testkit::{squares, torus};
     use std::ops::ControlFlow;
 

@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use proptest::prelude::*;
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::features::sharp_edges;
 use seamstress_quads::extract::MapFault;
 use seamstress_quads::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, extract};
-use seamstress_surface::TriMesh;
-use seamstress_surface::features::sharp_edges;
 use seamstress_testkit::{
     IntegerMap, annulus, cube, cylinder, disk_grid, l_bracket, random_voxels, slab_with_holes,
     squares, torus,

@@ -3,12 +3,12 @@
 
 use num_complex::Complex64;
 use proptest::prelude::*;
-use seamstress::quality::distortion;
-use seamstress::{SeamlessMap, Tolerance};
+use seamstress_mesh::Metric;
+use seamstress_parametrize::quality::distortion;
+use seamstress_parametrize::{SeamlessMap, Tolerance};
 use seamstress_quads::layout::{LayoutError, QuadLayout, lay_out_conformal, lay_out_squares};
 use seamstress_quads::quality::{Topology, measure};
 use seamstress_quads::{ExtractOptions, QuadMesh, extract};
-use seamstress_surface::Metric;
 use seamstress_testkit as kit;
 use std::collections::BTreeMap;
 

@@ -1,10 +1,11 @@
 //! Coarse grids, whose quads could easily be neighbours twice.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
-use seamstress::{GridSize, IntegerOptions, MapOptions, make_map, to_integer_map};
+use seamstress_mesh::soup::TriangleSoup;
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_quads::manifold_quads;
-use seamstress_surface::soup::TriangleSoup;
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
 

@@ -1,7 +1,7 @@
 //! Random edge flips.
 
 use crate::rng::Rng;
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::collections::HashMap;
 
 /// Smallest corner angle, in radians, that a flip may make, unless there was a smaller one before.

@@ -2,8 +2,8 @@
 
 use crate::rng::Rng;
 use crate::voxels::voxel_surface;
-use seamstress_surface::TriMesh;
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::soup::TriangleSoup;
 use std::collections::{BTreeSet, HashMap};
 
 type Uv = [f64; 2];

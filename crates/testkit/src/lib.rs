@@ -1,6 +1,6 @@
 //! Shapes and generators for the tests of Seamstress (not published).
 //!
-//! Every function returns a [`TriangleSoup`](seamstress_surface::soup::TriangleSoup) and is
+//! Every function returns a [`TriangleSoup`](seamstress_mesh::soup::TriangleSoup) and is
 //! deterministic: what is random comes from a seed. Shapes have faces counter-clockwise seen from
 //! outside and lengths of about 1 unless they say otherwise. Arguments out of range panic: this
 //! crate serves tests alone.

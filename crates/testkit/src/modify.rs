@@ -1,7 +1,7 @@
 //! New surfaces from given ones.
 
 use crate::rng::Rng;
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::collections::HashMap;
 
 type Point = [f64; 3];

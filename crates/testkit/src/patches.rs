@@ -1,6 +1,6 @@
 //! Surfaces with boundary.
 
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::f64::consts::TAU;
 
 /// A disk: the graph of `height` over the square `[-1, 1]²` in `n` by `m` quads, each split along

@@ -3,7 +3,7 @@
 use crate::modify::{bumpy, relabel, stretch, subdivide, with_boundaries};
 use crate::rng::Rng;
 use crate::{icosphere, random_flips, slab_with_holes, torus};
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 
 /// A surface in one piece of genus 0 to 3 with 0 to 3 boundary loops and 100 to 2000 faces:
 /// oriented, manifold, bumpy, irregular and in random order.

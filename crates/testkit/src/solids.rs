@@ -1,7 +1,7 @@
 //! Closed surfaces of genus 0.
 
 use crate::modify::subdivide;
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::f64::consts::{PI, TAU};
 
 fn soup(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriangleSoup {

@@ -1,6 +1,6 @@
 //! What the tests of all shapes ask.
 
-use seamstress_surface::soup::{Facts, TriangleSoup, check};
+use seamstress_mesh::soup::{Facts, TriangleSoup, check};
 
 /// Asserts that the soup is a mesh without any fault, and returns its facts.
 pub(crate) fn sound(soup: &TriangleSoup) -> Facts {

@@ -1,6 +1,6 @@
 //! Closed surfaces of genus 1.
 
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::f64::consts::TAU;
 
 /// The torus around the z-axis with `n` ≥ 3 steps around it and `m` ≥ 3 around the tube, of

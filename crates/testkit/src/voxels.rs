@@ -1,6 +1,6 @@
 //! Surfaces of unions of unit cubes: any genus, right angles only.
 
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The surface of a union of unit cubes, given by their lowest corners; every square of it is
@@ -77,7 +77,7 @@ pub fn l_bracket() -> TriangleSoup {
 mod tests {
     use super::{double_torus, l_bracket, slab_with_holes, voxel_surface};
     use crate::testing::{six_volumes, topology};
-    use seamstress_surface::soup::{Fault, check};
+    use seamstress_mesh::soup::{Fault, check};
 
     #[test]
     fn slabs_have_as_many_handles_as_holes() {

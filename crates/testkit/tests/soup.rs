@@ -1,8 +1,8 @@
 //! What must hold of checks and repairs on surfaces of every kind.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use seamstress_surface::TriMesh;
-use seamstress_surface::soup::{Facts, Fault, TriangleSoup, check, repair, triangulate};
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::soup::{Facts, Fault, TriangleSoup, check, repair, triangulate};
 use seamstress_testkit::{
     Rng, disjoint_union, double_torus, icosphere, octahedron, random_flips, random_surface,
     relabel, scale, torus, with_boundaries,
@@ -12,7 +12,7 @@ const SEEDS: std::ops::Range<u64> = 0..60;
 
 /// Each component's Euler characteristic, genus and boundary loops, whatever their order.
 fn topology(facts: &Facts) -> Vec<(i64, Option<usize>, usize)> {
-    let kind = |c: &seamstress_surface::soup::ComponentFacts| {
+    let kind = |c: &seamstress_mesh::soup::ComponentFacts| {
         (c.euler_characteristic(), c.genus, c.boundary_loops)
     };
     let mut kinds: Vec<_> = facts.components.iter().map(kind).collect();

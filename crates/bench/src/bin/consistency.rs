@@ -7,17 +7,17 @@
 )]
 
 use clap::Parser;
-use seamstress::consistency::{
-    AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut,
-};
-use seamstress::cut::{DualTree, curvature_weight};
-use seamstress::features::Sectors;
-use seamstress::progress::Watch;
-use seamstress::rounding::MatchedCut;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::cpu_seconds;
-use seamstress_surface::{Metric, TriMesh, components::components};
+use seamstress_mesh::{Metric, TriMesh, components::components};
+use seamstress_parametrize::consistency::{
+    AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut,
+};
+use seamstress_parametrize::cut::{DualTree, curvature_weight};
+use seamstress_parametrize::features::Sectors;
+use seamstress_parametrize::progress::Watch;
+use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_testkit::Rng;
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,12 +1,12 @@
 //! Round trips from maps to cross fields and back, on every mesh of a folder.
 
 use clap::Parser;
-use seamstress::field::{CrossField, Homology, extract, lift, map_indices};
-use seamstress::{MapOptions, Start, make_map, make_map_from};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{Mesh, list, load, name};
 use seamstress_bench::process::cpu_seconds;
-use seamstress_surface::{HalfedgeData, Metric};
+use seamstress_mesh::{HalfedgeData, Metric};
+use seamstress_parametrize::field::{CrossField, Homology, extract, lift, map_indices};
+use seamstress_parametrize::{MapOptions, Start, make_map, make_map_from};
 use std::error::Error;
 use std::io::Write;
 use std::ops::ControlFlow;

@@ -7,12 +7,14 @@
 )]
 
 use clap::Parser;
-use seamstress::integer::IntegerStats;
-use seamstress::{GridSize, IntegerOptions, IntegerRounding, IntegerSolution, to_integer_map};
 use seamstress_bench::maps::{seamless, write_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::exit_code;
+use seamstress_quantize::IntegerStats;
+use seamstress_quantize::{
+    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, to_integer_map,
+};
 use serde_json::Value;
 use std::error::Error;
 use std::fs::{self, File};

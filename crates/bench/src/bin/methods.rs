@@ -1,13 +1,13 @@
 //! The direct method against the classical pipeline, on every mesh of a folder.
 
 use clap::Parser;
-use seamstress::quality::Distortion;
-use seamstress::{
-    FieldMapOptions, MapError, MapOptions, Start, make_field_map, make_map, make_map_from,
-};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{Mesh, list, load, name};
 use seamstress_bench::process::cpu_seconds;
+use seamstress_parametrize::quality::Distortion;
+use seamstress_parametrize::{
+    FieldMapOptions, MapError, MapOptions, Start, make_field_map, make_map, make_map_from,
+};
 use std::error::Error;
 use std::io::Write;
 use std::ops::ControlFlow;

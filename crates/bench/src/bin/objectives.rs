@@ -7,13 +7,17 @@
 )]
 
 use clap::Parser;
-use seamstress::quality::{Measure, SingularValues, Summary, distance_to_frames, summarize};
-use seamstress::{MapOptions, Objective, RelayoutOptions, SeamlessMap, make_map, relayout};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh, name};
 use seamstress_bench::process::{cpu_seconds, exit_code};
 use seamstress_io::{MapObj, write_map_obj};
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::quality::{
+    Measure, SingularValues, Summary, distance_to_frames, summarize,
+};
+use seamstress_parametrize::{
+    MapOptions, Objective, RelayoutOptions, SeamlessMap, make_map, relayout,
+};
 use serde_json::Value;
 use std::error::Error;
 use std::fs::File;
@@ -124,7 +128,7 @@ fn measure_mesh(mesh: &Mesh, args: &Args, folder: &Path) -> Result<Vec<Row>, Box
     Ok(rows)
 }
 
-fn endings(components: &[seamstress::RelayoutStats]) -> String {
+fn endings(components: &[seamstress_parametrize::RelayoutStats]) -> String {
     let texts: Vec<String> = components.iter().map(|c| c.ending.to_string()).collect();
     texts.join(", ")
 }

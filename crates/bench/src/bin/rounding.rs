@@ -7,12 +7,12 @@
 )]
 
 use clap::{Parser, value_parser};
-use seamstress::mixed_integer::MixedIntegerOptions;
-use seamstress::rounding::RoundingStrategy;
-use seamstress::{MapError, MapOptions, MapSolution, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::{cpu_seconds, exit_code};
+use seamstress_parametrize::mixed_integer::MixedIntegerOptions;
+use seamstress_parametrize::rounding::RoundingStrategy;
+use seamstress_parametrize::{MapError, MapOptions, MapSolution, make_map};
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;

@@ -7,15 +7,15 @@
 )]
 
 use clap::{Parser, value_parser};
-use seamstress::cut::Cut;
-use seamstress::layout::problem::LayoutProblem;
-use seamstress::layout::space::LinearSpace;
-use seamstress::layout::triangle::triangles;
-use seamstress::{MapOptions, Stage, make_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::{cpu_seconds, exit_code, forget_peak_memory, peak_memory};
-use seamstress_surface::{Component, Metric, TriMesh, components};
+use seamstress_mesh::{Component, Metric, TriMesh, components};
+use seamstress_parametrize::cut::Cut;
+use seamstress_parametrize::layout::problem::LayoutProblem;
+use seamstress_parametrize::layout::space::LinearSpace;
+use seamstress_parametrize::layout::triangle::triangles;
+use seamstress_parametrize::{MapOptions, Stage, make_map};
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,7 +1,7 @@
 //! Arguments of `check`.
 
 use super::{EXIT_CODES, FeatureArgs, not_negative, tolerance};
-use seamstress::{AlignmentTolerance, Tolerance};
+use seamstress_parametrize::{AlignmentTolerance, Tolerance};
 use std::path::PathBuf;
 
 const CHECK_EXAMPLES: &str = "\

@@ -1,7 +1,7 @@
 //! Arguments of `field`.
 
 use super::{EXIT_CODES, not_negative};
-use seamstress::Tolerance;
+use seamstress_parametrize::Tolerance;
 use std::path::PathBuf;
 
 const FIELD_EXAMPLES: &str = "\

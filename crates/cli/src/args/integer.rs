@@ -2,7 +2,8 @@
 
 use super::texture::positive;
 use super::{ConeArgs, EXIT_CODES, FeatureArgs, RunArgs, TextureArgs, not_negative};
-use seamstress::{GridSize, IntegerOptions, IntegerRounding, Tolerance};
+use seamstress_parametrize::Tolerance;
+use seamstress_quantize::{GridSize, IntegerOptions, IntegerRounding};
 use std::path::PathBuf;
 
 const INTEGER_EXAMPLES: &str = "\

@@ -1,7 +1,7 @@
 //! Arguments of `layout`.
 
 use super::{EXIT_CODES, FeatureArgs, RunArgs, TextureArgs, not_negative, objective, tolerance};
-use seamstress::{Objective, RelayoutOptions, Solver};
+use seamstress_parametrize::{Objective, RelayoutOptions, Solver};
 use std::path::PathBuf;
 
 const LAYOUT_EXAMPLES: &str = "\

@@ -5,9 +5,9 @@ use super::{
     seconds,
 };
 use clap::value_parser;
-use seamstress::mixed_integer::MixedIntegerOptions;
-use seamstress::rounding::{RoundingOptions, RoundingStrategy};
-use seamstress::{MapOptions, Objective, PolishOptions};
+use seamstress_parametrize::mixed_integer::MixedIntegerOptions;
+use seamstress_parametrize::rounding::{RoundingOptions, RoundingStrategy};
+use seamstress_parametrize::{MapOptions, Objective, PolishOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 

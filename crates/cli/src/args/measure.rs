@@ -1,8 +1,8 @@
 //! Arguments of `measure`.
 
 use super::{EXIT_CODES, measure, not_negative, tolerance};
-use seamstress::Tolerance;
-use seamstress::quality::Measure;
+use seamstress_parametrize::Tolerance;
+use seamstress_parametrize::quality::Measure;
 use std::path::PathBuf;
 
 const MEASURE_EXAMPLES: &str = "\

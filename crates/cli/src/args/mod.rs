@@ -30,9 +30,9 @@ pub(crate) use texture::TextureArgs;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, value_parser};
-use seamstress::quality::Measure;
-use seamstress::rounding::RoundingOptions;
-use seamstress::{MapOptions, Objective, Tolerance};
+use seamstress_parametrize::quality::Measure;
+use seamstress_parametrize::rounding::RoundingOptions;
+use seamstress_parametrize::{MapOptions, Objective, Tolerance};
 use std::time::Duration;
 
 const EXIT_CODES: &str = "\

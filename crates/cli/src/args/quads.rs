@@ -2,7 +2,7 @@
 
 use super::{EXIT_CODES, TextureArgs};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use seamstress::quality::Measure;
+use seamstress_parametrize::quality::Measure;
 use std::path::PathBuf;
 
 const LAYOUT_EXAMPLES: &str = "\

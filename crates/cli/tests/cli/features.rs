@@ -1,7 +1,7 @@
 //! Features from every source, what is wrong with them, and the certificate of alignment.
 
 use crate::harness::{Folder, obj};
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use seamstress_testkit as testkit;
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! Running the command in a folder of its own.
 
-use seamstress_surface::soup::TriangleSoup;
+use seamstress_mesh::soup::TriangleSoup;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ use super::points::{GridPoints, Site};
 use super::snap::GridMap;
 use super::winding::degrees;
 use rayon::prelude::*;
-use seamstress_surface::{Face, TriMesh};
+use seamstress_mesh::{Face, TriMesh};
 
 const NONE: u32 = u32::MAX;
 /// Faces looked at by one task.

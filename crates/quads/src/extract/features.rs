@@ -2,8 +2,8 @@
 
 use super::{Extraction, SurfacePoint};
 use crate::constraints::{Constraints, SlideCurve};
-use seamstress_surface::features::{EdgeSet, FeatureGraph};
-use seamstress_surface::{Face, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_mesh::features::{EdgeSet, FeatureGraph};
+use seamstress_mesh::{Face, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::collections::HashSet;
 
 impl Extraction {

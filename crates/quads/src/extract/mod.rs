@@ -28,7 +28,7 @@ use fixed::Point;
 use patches::Patches;
 use pieces::Pieces;
 use points::{GridPoints, Site};
-use seamstress_surface::{Face, TriMesh};
+use seamstress_mesh::{Face, TriMesh};
 use snap::{GridMap, snap};
 
 /// How to extract.

@@ -5,7 +5,7 @@ use super::pieces::Pieces;
 use super::snap::GridMap;
 use super::sweep::{cells_in_row, rows};
 use rayon::prelude::*;
-use seamstress_surface::{Halfedge, TriMesh};
+use seamstress_mesh::{Halfedge, TriMesh};
 
 /// The connected parts of the preimages of open cells.
 pub(super) struct Patches {

@@ -5,7 +5,7 @@ use super::fixed::{Point, Unit};
 use super::snap::GridMap;
 use super::sweep::{cells_in_row, rows};
 use rayon::prelude::*;
-use seamstress_surface::{Face, TriMesh};
+use seamstress_mesh::{Face, TriMesh};
 use std::ops::Range;
 
 /// The most pieces; some gigabytes are needed for as many.

@@ -3,7 +3,7 @@
 use super::error::{ExtractError, MapFault, MapFaults};
 use super::fixed::{LARGEST_COORDINATE, Point, Transition, Unit, turned};
 use rayon::prelude::*;
-use seamstress_surface::{Complex64, Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
+use seamstress_mesh::{Complex64, Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// How far the numbers were from exactness, and what was done about it. Grid units.
@@ -39,7 +39,7 @@ pub(super) struct GridMap {
 
 impl GridMap {
     /// The images of the corners of a face.
-    pub(super) fn triangle(&self, face: seamstress_surface::Face) -> [Point; 3] {
+    pub(super) fn triangle(&self, face: seamstress_mesh::Face) -> [Point; 3] {
         face.halfedges().map(|h| self.corners[h])
     }
 

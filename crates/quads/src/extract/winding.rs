@@ -4,7 +4,7 @@ use super::patches::Patches;
 use super::pieces::Pieces;
 use super::snap::GridMap;
 use rayon::prelude::*;
-use seamstress_surface::{Face, TriMesh};
+use seamstress_mesh::{Face, TriMesh};
 
 /// The degree of every patch: sheets that keep the orientation, less those that turn it over.
 ///

@@ -3,10 +3,10 @@
 use super::{LayoutError, QuadLayout, lay_out_squares};
 use crate::QuadMesh;
 use num_complex::Complex64;
-use seamstress::cut::Cut;
-use seamstress_numerics::ordering::{Graph, nested_dissection};
-use seamstress_numerics::{Cholesky, Pattern, PatternBuilder};
-use seamstress_surface::Halfedge;
+use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::{Cholesky, Pattern, PatternBuilder};
+use seamstress_mesh::Halfedge;
+use seamstress_parametrize::cut::Cut;
 
 /// The anti-conformal part of a map of the half square with corners `0, 1, 1 + i`, and of
 /// `0, 1 + i, i`: coefficients of the corners, up to a common factor.

@@ -7,7 +7,7 @@ pub use conformal::lay_out_conformal;
 pub use squares::lay_out_squares;
 
 use crate::QuadMesh;
-use seamstress_surface::{MeshError, TriMesh};
+use seamstress_mesh::{MeshError, TriMesh};
 use std::collections::HashSet;
 
 /// A quad mesh, split into triangles, with UVs in units of one quad edge.

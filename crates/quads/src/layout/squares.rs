@@ -2,7 +2,7 @@
 
 use super::{LayoutError, QuadLayout, split};
 use crate::QuadMesh;
-use seamstress_surface::{Face, Halfedge, TriMesh};
+use seamstress_mesh::{Face, Halfedge, TriMesh};
 use std::collections::VecDeque;
 
 /// A point of the integer grid.

@@ -12,8 +12,8 @@ pub use topology::Topology;
 
 use crate::QuadMesh;
 use crate::layout::{LayoutError, lay_out_squares};
-use seamstress::quality::{Distortion, SingularValues, Summary, measure_all};
-use seamstress_surface::Metric;
+use seamstress_mesh::Metric;
+use seamstress_parametrize::quality::{Distortion, SingularValues, Summary, measure_all};
 
 /// Figures of a polygon mesh, quads above all.
 #[derive(Debug, Clone, serde::Serialize)]

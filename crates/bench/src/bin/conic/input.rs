@@ -1,10 +1,10 @@
 //! Maps from files.
 
 use num_complex::Complex64;
-use seamstress::layout::exact::ExactLayout;
-use seamstress::{SeamlessMap, Tolerance};
 use seamstress_io::read_mesh;
-use seamstress_surface::{Metric, TriMesh};
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::layout::exact::ExactLayout;
+use seamstress_parametrize::{SeamlessMap, Tolerance};
 use std::error::Error;
 use std::path::Path;
 

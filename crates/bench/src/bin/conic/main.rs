@@ -11,10 +11,10 @@ mod measure;
 
 use clap::{Parser, ValueEnum};
 use measure::{Measurement, measure};
-use seamstress::layout::conic::Solver;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::name;
 use seamstress_bench::process::exit_code;
+use seamstress_parametrize::layout::conic::Solver;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};

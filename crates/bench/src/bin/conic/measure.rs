@@ -2,10 +2,10 @@
 
 use crate::Choice;
 use crate::input::Input;
-use seamstress::layout::conic::{ConicObjective, Solver, SolverOptions, solve};
-use seamstress::layout::problem::LayoutProblem;
-use seamstress::progress::Watch;
 use seamstress_bench::process::{cpu_seconds, forget_peak_memory, memory, peak_memory};
+use seamstress_parametrize::layout::conic::{ConicObjective, Solver, SolverOptions, solve};
+use seamstress_parametrize::layout::problem::LayoutProblem;
+use seamstress_parametrize::progress::Watch;
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -10,12 +10,12 @@ mod verify;
 mod weights;
 
 use clap::Parser;
-use seamstress::{MapOptions, MapSolution, Sectors, make_aligned_map};
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::{cpu_seconds, exit_code};
-use seamstress_surface::features::{EdgeSet, sharp_edges};
-use seamstress_surface::{Halfedge, Metric, VertexData};
+use seamstress_mesh::features::{EdgeSet, sharp_edges};
+use seamstress_mesh::{Halfedge, Metric, VertexData};
+use seamstress_parametrize::{MapOptions, MapSolution, Sectors, make_aligned_map};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
 use std::fs;
@@ -137,8 +137,10 @@ fn row(
         verifier.verify(path, mesh, &arguments.map(str::to_owned), &aligned)
     });
     let verdict = verdict.transpose()?;
-    let relaxed =
-        aligned.released.iter().filter(|r| r.reason == seamstress::ReleaseReason::NoLayout);
+    let relaxed = aligned
+        .released
+        .iter()
+        .filter(|r| r.reason == seamstress_parametrize::ReleaseReason::NoLayout);
     let relaxed = relaxed.count();
     let (a, p) = (&aligned.distortion, &plain.distortion);
     Ok(vec![

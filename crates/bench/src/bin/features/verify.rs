@@ -1,7 +1,7 @@
 //! Verification of aligned maps by a script that shares no code with the program.
 
-use seamstress::MapSolution;
 use seamstress_bench::meshes::Mesh;
+use seamstress_parametrize::MapSolution;
 use serde_json::Value;
 use std::error::Error;
 use std::fmt::Write;

@@ -1,9 +1,9 @@
 //! Maps for several weights of the corners.
 
 use crate::{Args, corners_off, features_of, solve};
-use seamstress::MapOptions;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes;
+use seamstress_parametrize::MapOptions;
 use std::error::Error;
 
 /// One row per mesh and weight.

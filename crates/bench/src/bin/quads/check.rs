@@ -1,7 +1,7 @@
 //! What must hold of the quads of a map, found from their corners alone.
 
-use seamstress::SeamlessMap;
 use seamstress_bench::meshes::Mesh;
+use seamstress_parametrize::SeamlessMap;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 type Edge = (u32, u32);
@@ -165,7 +165,7 @@ fn key(p: [f64; 3]) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use seamstress_surface::TriMesh;
+    use seamstress_mesh::TriMesh;
     use seamstress_testkit as kit;
 
     fn cube() -> (kit::IntegerMap, Vec<[u32; 4]>) {
@@ -202,7 +202,7 @@ mod tests {
     fn every_fault_is_told() {
         let (map, quads) = cube();
         let connectivity = TriMesh::from_faces(8, &map.soup.faces).unwrap();
-        let tolerance = seamstress::Tolerance::default();
+        let tolerance = seamstress_parametrize::Tolerance::default();
         let certified = SeamlessMap::certify(&connectivity, map.corner_uvs, &tolerance).unwrap();
         let mesh = Mesh { connectivity, positions: map.soup.positions.clone() };
         let of = |positions: &[[f64; 3]], quads: &[[u32; 4]]| {

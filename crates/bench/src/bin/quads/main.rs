@@ -10,18 +10,18 @@ mod check;
 mod order;
 
 use clap::Parser;
-use seamstress::{GridSize, IntegerOptions, to_integer_map};
 use seamstress_bench::maps::seamless;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::exit_code;
+use seamstress_mesh::soup;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, surface_distance,
 };
 use seamstress_quads::{
     Constraints, MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth,
 };
-use seamstress_surface::soup;
+use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;

@@ -1,7 +1,7 @@
 //! What is done to a good map.
 
-use seamstress::consistency::lifted_angles;
-use seamstress_surface::{Face, Halfedge, HalfedgeData, TriMesh};
+use seamstress_mesh::{Face, Halfedge, HalfedgeData, TriMesh};
+use seamstress_parametrize::consistency::lifted_angles;
 use seamstress_testkit::Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -80,7 +80,7 @@ pub(crate) fn folded_angles(
         / mesh.n_halfedges() as f64;
     let count = ((DRAGGED * mesh.n_vertices() as f64).round() as usize).max(1);
     for _ in 0..count {
-        let v = seamstress_surface::Vertex(rng.below(mesh.n_vertices()) as u32);
+        let v = seamstress_mesh::Vertex(rng.below(mesh.n_vertices()) as u32);
         let fan: Vec<_> = mesh.outgoing(v).collect();
         // Only where no seam passes: all corners of the vertex at one place.
         if mesh.is_boundary(v)

@@ -1,22 +1,22 @@
 //! One mesh: its good map, damaged, made consistent, laid out.
 
 use crate::damage::{Damage, count_flips, folded_angles, noisy_angles, wrong_matchings};
-use seamstress::consistency::{
+use seamstress_bench::meshes::Mesh;
+use seamstress_bench::process::cpu_seconds;
+use seamstress_mesh::{HalfedgeData, Metric, TriMesh, components::components};
+use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut, lifted_angles,
     matched_by_angles,
 };
-use seamstress::cut::{DualTree, curvature_weight};
-use seamstress::features::Sectors;
-use seamstress::layout::isometric::frames_of_angles;
-use seamstress::layout::safeguards::lay_out;
-use seamstress::progress::Watch;
-use seamstress::rounding::MatchedCut;
-use seamstress::{
+use seamstress_parametrize::cut::{DualTree, curvature_weight};
+use seamstress_parametrize::features::Sectors;
+use seamstress_parametrize::layout::isometric::frames_of_angles;
+use seamstress_parametrize::layout::safeguards::lay_out;
+use seamstress_parametrize::progress::Watch;
+use seamstress_parametrize::rounding::MatchedCut;
+use seamstress_parametrize::{
     FieldMapOptions, MapError, MapOptions, SeamlessMap, Tolerance, make_field_map, make_map,
 };
-use seamstress_bench::meshes::Mesh;
-use seamstress_bench::process::cpu_seconds;
-use seamstress_surface::{HalfedgeData, Metric, TriMesh, components::components};
 use seamstress_testkit::{CheckedSeam, Rng, consistency_faults};
 use std::ops::ControlFlow;
 
@@ -111,7 +111,7 @@ impl Subject {
         };
         let uvs = made.map.corner_uvs();
         let pieces = components(&mesh.connectivity).unwrap_or_default();
-        let piece = |piece: seamstress_surface::Component| {
+        let piece = |piece: seamstress_mesh::Component| {
             let positions: Vec<_> = piece.vertices.iter().map(|v| mesh.positions[v.at()]).collect();
             let metric = Metric::from_positions(&piece.mesh, &positions);
             let corners = || piece.faces.iter().flat_map(|f| f.halfedges());

@@ -1,0 +1,142 @@
+//! The linear system behind the angles.
+//!
+//! Minimising `sum w^-1 delta^2` over changes of angles with given sums in triangles and groups leaves,
+//! when the triangles are eliminated, a Laplacian over the groups: of each triangle
+//! `diag(w) - w w' / sum w`.
+
+use super::groups::{FREE, Groups};
+use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_mesh::TriMesh;
+
+/// Right-hand sides solved together.
+const BATCH: usize = 8;
+
+/// Pattern and factor of the Laplacian over the groups.
+pub(super) struct System {
+    /// Group of each corner.
+    pub(super) group: Vec<u32>,
+    pub(super) pattern: Pattern,
+    /// Groups that share a triangle.
+    pub(super) graph: Graph,
+    pinned: Vec<u32>,
+    order: Vec<u32>,
+    /// Entries of each face: 00, 10, 11, 20, 21, 22; `FREE` where a corner is free.
+    slots: Vec<[u32; 6]>,
+    values: Vec<f64>,
+    cholesky: Cholesky<f64>,
+}
+
+impl System {
+    pub(super) fn new(mesh: &TriMesh, groups: &Groups) -> Result<Self, NotPositiveDefinite> {
+        let group: Vec<u32> = mesh.halfedges().map(|h| groups.of[mesh.origin(h)]).collect();
+        let n = groups.len();
+        let mut builder = PatternBuilder::new(n);
+        let mut edges = Vec::with_capacity(group.len());
+        for corners in group.chunks_exact(3) {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let (a, b) = (corners[a], corners[b]);
+                if a != FREE && b != FREE && a != b {
+                    builder.add_clique(&[a, b]);
+                    edges.push((a, b));
+                }
+            }
+        }
+        let pattern = builder.build();
+        let graph = Graph::from_edges(n, edges.into_iter());
+        let order = nested_dissection(&graph);
+        let slot = |a: u32, b: u32| pattern.slot(a, b).unwrap_or(FREE);
+        let slots = group
+            .chunks_exact(3)
+            .map(|c| {
+                let pairs = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+                pairs.map(|(i, j)| slot(c[i], c[j]))
+            })
+            .collect();
+        let cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+        let values = vec![0.0; pattern.len()];
+        let pinned = groups.pinned.clone();
+        Ok(Self { group, pattern, graph, pinned, order, slots, values, cholesky })
+    }
+
+    /// The same system with a factor of its own.
+    pub(super) fn twin(&self) -> Result<Self, NotPositiveDefinite> {
+        Ok(Self {
+            group: self.group.clone(),
+            pattern: self.pattern.clone(),
+            graph: self.graph.clone(),
+            pinned: self.pinned.clone(),
+            order: self.order.clone(),
+            slots: self.slots.clone(),
+            values: self.values.clone(),
+            cholesky: Cholesky::analyze_for(Kernel::Simplicial, &self.pattern, &self.order)?,
+        })
+    }
+
+    /// Factors the Laplacian of the corner weights with `slack` on the diagonal; without slack, a group
+    /// of each closed component is pinned.
+    pub(super) fn factorize(
+        &mut self,
+        weights: &[f64],
+        slack: f64,
+    ) -> Result<(), NotPositiveDefinite> {
+        if self.values.is_empty() {
+            return Ok(());
+        }
+        self.values.fill(0.0);
+        for (f, slots) in self.slots.iter().enumerate() {
+            let w = &weights[3 * f..3 * f + 3];
+            let sum = w[0] + w[1] + w[2];
+            for (&slot, (i, j)) in
+                slots.iter().zip([(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)])
+            {
+                if slot == FREE {
+                    continue;
+                }
+                let value = &mut self.values[slot as usize];
+                if i == j {
+                    // w - w^2 / sum without cancellation.
+                    *value += w[i] * ((sum - w[i]) / sum);
+                } else {
+                    // Two corners of one group meet on the diagonal, once from each side.
+                    let twice = self.group[3 * f + i] == self.group[3 * f + j];
+                    *value -= w[i] * w[j] / sum * if twice { 2.0 } else { 1.0 };
+                }
+            }
+        }
+        let diagonal = self.pattern.diagonal();
+        diagonal.iter().for_each(|&k| self.values[k as usize] += slack);
+        if slack == 0.0 {
+            for &g in &self.pinned {
+                let value = &mut self.values[diagonal[g as usize] as usize];
+                *value = if *value > 0.0 { 2.0 * *value } else { 1.0 };
+            }
+        }
+        self.cholesky.factorize(&self.pattern, &self.values)
+    }
+
+    /// Overwrites a right-hand side with the solution.
+    pub(super) fn solve(&self, rhs: &mut [f64]) -> Result<(), NotPositiveDefinite> {
+        if rhs.is_empty() { Ok(()) } else { self.cholesky.solve_columns(rhs, 1) }
+    }
+
+    /// Columns of the inverse.
+    pub(super) fn columns(&self, of: &[u32]) -> Result<Vec<Vec<f64>>, NotPositiveDefinite> {
+        let n = self.pattern.order();
+        let mut columns = Vec::with_capacity(of.len());
+        for chunk in of.chunks(BATCH) {
+            let mut block = vec![0.0; n * chunk.len()];
+            for (column, &g) in block.chunks_exact_mut(n).zip(chunk) {
+                column[g as usize] = 1.0;
+            }
+            self.cholesky.solve_columns(&mut block, chunk.len())?;
+            columns.extend(block.chunks_exact(n).map(<[f64]>::to_vec));
+        }
+        Ok(columns)
+    }
+
+    /// The inverse at the entries of the pattern.
+    pub(super) fn selected_inverse(&self) -> Result<Vec<f64>, NotPositiveDefinite> {
+        self.cholesky.selected_inverse(&self.pattern).ok_or(NotPositiveDefinite)
+    }
+}

@@ -1,0 +1,105 @@
+//! A first layout of a disk: inside a circle, every vertex the mean of its neighbours (Tutte 1963).
+
+use num_complex::Complex64;
+use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
+use seamstress_mesh::{Halfedge, Metric, TriMesh, Vertex};
+use std::f64::consts::TAU;
+
+/// Whether a connected mesh is a topological disk.
+pub fn is_disk(mesh: &TriMesh) -> bool {
+    mesh.genus() == 0 && mesh.n_boundary_loops() == 1
+}
+
+/// Positions of the corners, three per face, with the boundary on a circle of the mesh's area, spaced by
+/// length. No triangle is flipped, in exact arithmetic: the polygon is strictly convex.
+///
+/// # Errors
+/// When the mesh is not a disk, or the system cannot be factored.
+pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, NotPositiveDefinite> {
+    if !is_disk(mesh) {
+        return Err(NotPositiveDefinite);
+    }
+    let n = mesh.n_vertices();
+    let mut z = on_circle(mesh, metric);
+    let is_inner = |v: Vertex| !mesh.is_boundary(v);
+    let ends = |h| [mesh.origin(h), mesh.tip(h)];
+    let mut builder = PatternBuilder::new(n);
+    mesh.edges().for_each(|h| builder.add_clique(&ends(h).map(|v| v.0)));
+    let pattern = builder.build();
+    let edges: Vec<_> = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect();
+    let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
+    let mut cholesky = Cholesky::<f64>::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+    // Boundary vertices keep rows of their own, `z = z`.
+    let mut matrix = vec![0.0; pattern.len()];
+    let mut rhs = vec![[0.0; 2]; n];
+    for v in mesh.vertices().filter(|&v| !is_inner(v)) {
+        matrix[pattern.diagonal()[v.at()] as usize] = 1.0;
+        rhs[v.at()] = [z[v.at()].re, z[v.at()].im];
+    }
+    for h in mesh.edges() {
+        let [a, b] = ends(h);
+        for (v, other) in [(a, b), (b, a)].into_iter().filter(|(v, _)| is_inner(*v)) {
+            matrix[pattern.diagonal()[v.at()] as usize] += 1.0;
+            if !is_inner(other) {
+                rhs[v.at()][0] += z[other.at()].re;
+                rhs[v.at()][1] += z[other.at()].im;
+            }
+        }
+        if let Some(slot) = pattern.slot(a.0, b.0).filter(|_| is_inner(a) && is_inner(b)) {
+            matrix[slot as usize] = -1.0;
+        }
+    }
+    cholesky.factorize(&pattern, &matrix)?;
+    let [u, v] = [0, 1].map(|k| {
+        let mut column: Vec<f64> = rhs.iter().map(|r| r[k]).collect();
+        cholesky.solve(&mut column);
+        column
+    });
+    for v0 in mesh.vertices().filter(|&v| is_inner(v)) {
+        z[v0.at()] = Complex64::new(u[v0.at()], v[v0.at()]);
+    }
+    let corner = |h: Halfedge| z[mesh.origin(h).at()] * metric.unit;
+    Ok(mesh.halfedges().map(|h| [corner(h).re, corner(h).im]).collect())
+}
+
+/// The boundary vertices on their circle, counter-clockwise; the others at its centre.
+fn on_circle(mesh: &TriMesh, metric: &Metric) -> Vec<Complex64> {
+    let mut z = vec![Complex64::ZERO; mesh.n_vertices()];
+    let border = |h: &Halfedge| mesh.twin(*h).is_none();
+    let perimeter: f64 = mesh.halfedges().filter(border).map(|h| metric.length[h]).sum();
+    let radius = (2.0 * metric.total_area() / TAU).sqrt();
+    let Some(first) = mesh.halfedges().find(border) else { return z };
+    let (mut h, mut travelled) = (first, 0.0);
+    loop {
+        z[mesh.origin(h).at()] = Complex64::from_polar(radius, TAU * travelled / perimeter);
+        travelled += metric.length[h];
+        let Some(next) = mesh.outgoing(mesh.tip(h)).find(border).filter(|&next| next != first)
+        else {
+            return z;
+        };
+        h = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{SeamlessMap, Tolerance};
+    use seamstress_testkit as kit;
+
+    #[test]
+    fn disks_are_embedded_without_flips_and_others_refused() {
+        for soup in [kit::saddle(9), kit::fan(5, 1.0, true), kit::monkey_saddle(6)] {
+            let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+            let metric = Metric::from_positions(&mesh, &soup.positions);
+            let uvs = embed_disk(&mesh, &metric).unwrap();
+            let map = SeamlessMap::certify(&mesh, uvs, &Tolerance::default()).unwrap();
+            assert!(map.cones().is_empty() && map.seams().is_empty());
+        }
+        let soup = kit::icosphere(1);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        assert!(embed_disk(&mesh, &metric).is_err());
+    }
+}

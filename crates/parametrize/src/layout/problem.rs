@@ -1,0 +1,439 @@
+//! A layout problem: triangles, the space their corners live in, and one factorisation for both.
+
+use super::anisotropy::Anisotropy;
+use super::element::ElementMap;
+use super::energy::{Energy, ProjectedHessian};
+use super::penalty::SeamPenalty;
+use super::space::LinearSpace;
+use super::triangle::{CHUNK, Triangle, at_corner, sum_over, triangles};
+use crate::cut::Cut;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
+use seamstress_mesh::{Metric, TriMesh};
+use std::ops::Range;
+
+/// Triangles over a linear space, with everything that is prepared once: element maps, assembly,
+/// ordering and symbolic factorisation, workspaces.
+pub struct LayoutProblem {
+    space: LinearSpace,
+    triangles: Vec<Triangle>,
+    maps: Vec<ElementMap>,
+    assembly: Assembly,
+    cholesky: Cholesky<f64>,
+    blocks: Vec<f64>,
+    locals: Vec<f64>,
+    matrix: Vec<f64>,
+    /// The block of the matrix that is factored, when the last unknowns are held.
+    leading: Option<LeadingBlock>,
+    /// Soft seams, only with a free space.
+    pub penalty: Option<SeamPenalty>,
+}
+
+/// The leading block of a matrix: a pattern of its own, and where its entries lie in the whole.
+struct LeadingBlock {
+    pattern: Pattern,
+    slots: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl LeadingBlock {
+    fn new(whole: &Pattern, order: usize) -> Self {
+        let mut pattern = Pattern { column_offsets: vec![0], rows: Vec::new() };
+        let mut slots = Vec::new();
+        for column in 0..order {
+            for slot in whole.column_offsets[column]..whole.column_offsets[column + 1] {
+                let row = whole.rows[slot as usize];
+                if (row as usize) < order {
+                    pattern.rows.push(row);
+                    slots.push(slot);
+                }
+            }
+            pattern.column_offsets.push(pattern.rows.len() as u32);
+        }
+        Self { values: vec![0.0; slots.len()], pattern, slots }
+    }
+}
+
+impl LayoutProblem {
+    /// Prepares the problem. A penalty needs [`LinearSpace::free`], where unknown pair = wedge.
+    ///
+    /// # Errors
+    /// When the factorisation cannot be set up (memory).
+    pub fn new(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        penalty: Option<SeamPenalty>,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let (maps, mut elements): (Vec<_>, Vec<_>) =
+            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
+        for wedges in penalty.iter().flat_map(SeamPenalty::elements) {
+            elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
+        }
+        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
+        let order = order_by_nodes(space.nodes(), &elements);
+        let cholesky = Cholesky::analyze(assembly.pattern(), &order)?;
+        Ok(Self {
+            blocks: vec![0.0; assembly.blocks_len()],
+            locals: vec![0.0; assembly.locals_len()],
+            matrix: vec![0.0; assembly.pattern().len()],
+            space,
+            triangles,
+            maps,
+            assembly,
+            cholesky,
+            leading: None,
+            penalty,
+        })
+    }
+
+    /// A problem in which the unknowns from `n_free` on (an even number) are held where they are: the
+    /// matrix and gradient are of all unknowns, solves move the first ones only.
+    ///
+    /// # Errors
+    /// As [`LayoutProblem::new`].
+    pub fn with_held(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        n_free: usize,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let (maps, elements): (Vec<_>, Vec<_>) =
+            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
+        let free = |unknowns: &Vec<u32>| {
+            unknowns.iter().copied().filter(|&k| (k as usize) < n_free).collect::<Vec<u32>>()
+        };
+        let free: Vec<Vec<u32>> = elements.iter().map(free).collect();
+        let order = order_by_nodes(&space.nodes()[..n_free], &free);
+        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
+        let leading = LeadingBlock::new(assembly.pattern(), n_free);
+        let cholesky = Cholesky::analyze(&leading.pattern, &order)?;
+        Ok(Self {
+            blocks: vec![0.0; assembly.blocks_len()],
+            locals: vec![0.0; assembly.locals_len()],
+            matrix: vec![0.0; assembly.pattern().len()],
+            space,
+            triangles,
+            maps,
+            assembly,
+            cholesky,
+            leading: Some(leading),
+            penalty: None,
+        })
+    }
+
+    /// Number of unknowns that solves move.
+    pub fn n_free(&self) -> usize {
+        self.leading.as_ref().map_or(self.space.n_unknowns(), |block| block.pattern.order())
+    }
+
+    /// Pattern and values of the assembled matrix, held unknowns included (lower triangle).
+    pub fn matrix(&self) -> (&Pattern, &[f64]) {
+        (self.assembly.pattern(), &self.matrix)
+    }
+
+    /// The space of the unknowns.
+    pub fn space(&self) -> &LinearSpace {
+        &self.space
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Replaces the triangles' shapes and weights (another metric on the same cut).
+    pub fn set_metric(&mut self, mesh: &TriMesh, metric: &Metric, cut: &Cut) {
+        self.triangles = triangles(mesh, metric, cut);
+    }
+
+    /// Measures the Jacobians from stretched faces from now on.
+    pub fn stretch(&mut self, anisotropy: &Anisotropy) {
+        anisotropy.apply(&mut self.triangles);
+    }
+
+    /// Entries of the Cholesky factor.
+    pub fn factor_len(&self) -> usize {
+        self.cholesky.factor_len()
+    }
+
+    /// Total energy, penalty included; infinite when a triangle is flipped or collapsed.
+    pub fn value(&self, energy: &impl Energy, z: &[Complex64]) -> f64 {
+        let sum = sum_over(&self.triangles, |t| {
+            let (s1, s2) = t.jacobian(z).singular_values();
+            if energy.allows_flips() || (s2 > 0.0 && t.doubled_area(z) > 0.0) {
+                t.weight * energy.value(s1, s2)
+            } else {
+                f64::INFINITY
+            }
+        });
+        sum + self.penalty.as_ref().map_or(0.0, |p| p.value(z))
+    }
+
+    /// Assembles gradient and projected Hessian; returns the gradient in the unknowns.
+    pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
+        self.fill_triangles(|t, local, block| {
+            let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
+            for (k, &g) in t.gradients.iter().enumerate() {
+                let [x, y] = at_corner(hessian.gradient, g);
+                (local[2 * k], local[2 * k + 1]) = (t.weight * x, t.weight * y);
+            }
+            block.fill(0.0);
+            for (value, v) in hessian.eigenvalues.iter().zip(hessian.eigenvectors) {
+                let scale = value * t.weight;
+                if scale <= 0.0 {
+                    continue;
+                }
+                let mut q = [0.0; 6];
+                for (k, &g) in t.gradients.iter().enumerate() {
+                    [q[2 * k], q[2 * k + 1]] = at_corner(v, g);
+                }
+                let mut at = 0;
+                for i in 0..6 {
+                    for j in 0..=i {
+                        block[at] += scale * q[i] * q[j];
+                        at += 1;
+                    }
+                }
+            }
+        });
+        if let Some(penalty) = &self.penalty {
+            let first = self.triangles.len();
+            penalty.fill(z, &self.assembly, first, &mut self.blocks, &mut self.locals);
+        }
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+        let mut gradient = vec![0.0; self.space.n_unknowns()];
+        self.assembly.sum_vector(&self.locals, &mut gradient);
+        gradient
+    }
+
+    /// Assembles the Dirichlet form `sum of area |J|^2 / 2` of each coordinate.
+    pub fn assemble_dirichlet(&mut self) {
+        self.fill_triangles(|t, _, block| {
+            let mut at = 0;
+            for i in 0..6 {
+                for j in 0..=i {
+                    let (g, h) = (t.gradients[i / 2], t.gradients[j / 2]);
+                    let same = (i % 2 == j % 2) as u8 as f64;
+                    block[at] = same * t.weight * (g[0] * h[0] + g[1] * h[1]);
+                    at += 1;
+                }
+            }
+        });
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+    }
+
+    /// Assembles the conformal form `sum of area (sigma_1 - sigma_2)^2 / 2`, twice the squared
+    /// anti-similarity part of the Jacobian.
+    pub fn assemble_conformal(&mut self) {
+        self.fill_triangles(|t, _, block| {
+            // Coefficients of j00 - j11 and j01 + j10 in the corner coordinates.
+            let coefficient = |i: usize| {
+                let [x, y] = t.gradients[i / 2];
+                if i.is_multiple_of(2) { [x, y] } else { [-y, x] }
+            };
+            let mut at = 0;
+            for i in 0..6 {
+                for j in 0..=i {
+                    let (a, b) = (coefficient(i), coefficient(j));
+                    block[at] = t.weight * (a[0] * b[0] + a[1] * b[1]);
+                    at += 1;
+                }
+            }
+        });
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+    }
+
+    /// Factors the assembled matrix (of the unknowns that are not held), shifted by a fraction of its
+    /// mean diagonal that grows until it is positive definite.
+    ///
+    /// # Errors
+    /// When no reasonable shift helps (values that are not finite).
+    pub fn factorize(&mut self, shift: f64) -> Result<(), NotPositiveDefinite> {
+        let (pattern, values) = match &mut self.leading {
+            None => (self.assembly.pattern(), &mut self.matrix),
+            Some(block) => {
+                for (value, &slot) in block.values.iter_mut().zip(&block.slots) {
+                    *value = self.matrix[slot as usize];
+                }
+                (&block.pattern, &mut block.values)
+            }
+        };
+        let diagonal = pattern.diagonal();
+        let mean = diagonal.iter().map(|&k| values[k as usize]).sum::<f64>()
+            / diagonal.len().max(1) as f64;
+        let mut shift = shift * mean;
+        for _ in 0..8 {
+            for &k in diagonal {
+                values[k as usize] += shift;
+            }
+            if self.cholesky.factorize(pattern, values).is_ok() {
+                return Ok(());
+            }
+            shift = (shift * 100.0).max(1e-12 * mean);
+        }
+        Err(NotPositiveDefinite)
+    }
+
+    /// Factors the assembled matrix, each diagonal entry raised by the given part of itself.
+    ///
+    /// # Errors
+    /// When it is not positive definite to working precision; nothing else is tried.
+    pub fn factorize_as_is(&mut self, raise: f64) -> Result<(), NotPositiveDefinite> {
+        let pattern = self.assembly.pattern();
+        for &k in pattern.diagonal() {
+            self.matrix[k as usize] *= 1.0 + raise;
+        }
+        self.cholesky.factorize(pattern, &self.matrix)
+    }
+
+    /// Solves with the last factor in place; held unknowns become zero.
+    pub fn solve(&mut self, rhs: &mut [f64]) {
+        let (free, held) = rhs.split_at_mut(self.n_free());
+        self.cholesky.solve(free);
+        held.fill(0.0);
+    }
+
+    /// Solves for several right-hand sides of the free unknowns at once, column after column.
+    ///
+    /// # Errors
+    /// When there is no memory for the workspace.
+    pub fn solve_columns(
+        &self,
+        rhs: &mut [f64],
+        columns: usize,
+    ) -> Result<(), NotPositiveDefinite> {
+        self.cholesky.solve_columns(rhs, columns)
+    }
+
+    /// Assembles a matrix and a vector from a block and a vector per triangle, both in the six corner
+    /// coordinates (the block as the lower triangle by rows), for [`LayoutProblem::factorize`] or
+    /// [`LayoutProblem::factorize_as_is`].
+    ///
+    /// `local` works on the triangle's own `state` and on a tally; the tallies of fixed ranges of triangles
+    /// are returned in order, for reductions that do not depend on the number of threads.
+    pub fn assemble<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        vector: &mut [f64],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,
+    ) -> Vec<T> {
+        let tallies = self.fill_with_state(state, local);
+        self.assembly.sum_matrix(&self.blocks, &mut self.matrix);
+        self.assembly.sum_vector(&self.locals, vector);
+        tallies
+    }
+
+    /// Assembles a vector alone, in the way of [`LayoutProblem::assemble`].
+    pub fn assemble_vector<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        vector: &mut [f64],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6]) + Sync,
+    ) -> Vec<T> {
+        let mut tasks = Vec::new();
+        let (mut locals, mut states) = (self.locals.as_mut_slice(), state);
+        for range in chunks(self.triangles.len()) {
+            let (chunk, more_locals) =
+                locals.split_at_mut(span(&range, |e| self.assembly.local(e)));
+            let (state, more_states) = states.split_at_mut(range.len());
+            (locals, states) = (more_locals, more_states);
+            tasks.push((range, chunk, state));
+        }
+        let work = |(range, locals, states): (Range<usize>, &mut [f64], &mut [S])| {
+            let (mut tally, mut l, mut at) = (T::default(), [0.0; 6], 0);
+            for (e, state) in range.zip(states) {
+                local(&self.triangles[e], state, &mut tally, &mut l);
+                let len = self.assembly.local(e).len();
+                self.maps[e].pull_vector_back(&l, &mut locals[at..at + len]);
+                at += len;
+            }
+            tally
+        };
+        let tallies = tasks.into_par_iter().map(work).collect();
+        self.assembly.sum_vector(&self.locals, vector);
+        tallies
+    }
+
+    /// Visits every triangle with its own state, tallies as in [`LayoutProblem::assemble`].
+    pub fn visit<S: Send, T: Default + Send>(
+        &self,
+        state: &mut [S],
+        local: impl Fn(&Triangle, &mut S, &mut T) + Sync,
+    ) -> Vec<T> {
+        let chunks = self.triangles.par_chunks(CHUNK).zip(state.par_chunks_mut(CHUNK));
+        let work = |(triangles, states): (&[Triangle], &mut [S])| {
+            let mut tally = T::default();
+            for (t, state) in triangles.iter().zip(states) {
+                local(t, state, &mut tally);
+            }
+            tally
+        };
+        chunks.map(work).collect()
+    }
+
+    /// Runs `local` on triangles without state.
+    fn fill_triangles(&mut self, local: impl Fn(&Triangle, &mut [f64; 6], &mut [f64; 21]) + Sync) {
+        let mut stateless = vec![(); self.triangles.len()];
+        self.fill_with_state(&mut stateless, |t, (), (): &mut (), l, b| local(t, l, b));
+    }
+
+    /// Runs `local` on every triangle in the six corner coordinates and carries the results over to
+    /// the element's unknowns.
+    fn fill_with_state<S: Send, T: Default + Send>(
+        &mut self,
+        state: &mut [S],
+        local: impl Fn(&Triangle, &mut S, &mut T, &mut [f64; 6], &mut [f64; 21]) + Sync,
+    ) -> Vec<T> {
+        let assembly = &self.assembly;
+        let mut tasks = Vec::new();
+        let (mut blocks, mut locals) = (self.blocks.as_mut_slice(), self.locals.as_mut_slice());
+        let mut states = state;
+        for range in chunks(self.triangles.len()) {
+            let (block, more_blocks) = blocks.split_at_mut(span(&range, |e| assembly.block(e)));
+            let (vector, more_locals) = locals.split_at_mut(span(&range, |e| assembly.local(e)));
+            let (state, more_states) = states.split_at_mut(range.len());
+            (blocks, locals, states) = (more_blocks, more_locals, more_states);
+            tasks.push((range, block, vector, state));
+        }
+        let work =
+            |(range, blocks, locals, states): (Range<usize>, &mut [f64], &mut [f64], &mut [S])| {
+                let (mut tally, mut b, mut l) = (T::default(), [0.0; 21], [0.0; 6]);
+                let (mut block_at, mut local_at) = (0, 0);
+                for (e, state) in range.zip(states) {
+                    local(&self.triangles[e], state, &mut tally, &mut l, &mut b);
+                    let (block_len, local_len) = (assembly.block(e).len(), assembly.local(e).len());
+                    let block = &mut blocks[block_at..block_at + block_len];
+                    self.maps[e].pull_block_back(&b, block, local_len);
+                    let vector = &mut locals[local_at..local_at + local_len];
+                    self.maps[e].pull_vector_back(&l, vector);
+                    block_at += block_len;
+                    local_at += local_len;
+                }
+                tally
+            };
+        tasks.into_par_iter().map(work).collect()
+    }
+}
+
+/// Fixed ranges of triangles, one parallel task each.
+fn chunks(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(CHUNK).map(move |begin| begin..(begin + CHUNK).min(count))
+}
+
+/// Length of what the elements of a range hold, one after the other.
+fn span(range: &Range<usize>, of: impl Fn(usize) -> Range<usize>) -> usize {
+    of(range.end - 1).end - of(range.start).start
+}
+
+/// Elimination order of the unknowns: nested dissection of the graph of their nodes.
+fn order_by_nodes(nodes: &[u32], elements: &[Vec<u32>]) -> Vec<u32> {
+    let edges = elements.iter().flat_map(|unknowns| {
+        let node = move |k: usize| nodes[unknowns[k] as usize];
+        (0..unknowns.len()).flat_map(move |i| (0..i).map(move |j| (node(i), node(j))))
+    });
+    let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
+    let unknowns = Buckets::new(n_nodes, nodes);
+    let order = nested_dissection(&Graph::from_edges(n_nodes, edges));
+    order.iter().flat_map(|&node| unknowns.of(node as usize).iter().copied()).collect()
+}

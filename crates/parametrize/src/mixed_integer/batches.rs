@@ -1,0 +1,193 @@
+//! The rounding loop: batch after batch of integer variables.
+
+use super::program::{BatchProgram, MOST_TAU, Placed, rotation};
+use super::search::{Found, Limits, search};
+use super::{BatchStats, MixedIntegerOptions, MixedIntegerStats};
+use crate::layout::isometric::{frames_of_angles, unfold};
+use crate::progress::{Cancelled, Watch};
+use crate::rounding::MatchedCut;
+use num_complex::Complex64;
+use seamstress_mesh::{Metric, TriMesh};
+use std::time::Instant;
+
+/// Distances to integers closer than this are the same, quarters.
+const SAME: f64 = 1e-9;
+
+/// Chooses the matchings of a connected mesh by mixed-integer programs, with nothing aligned.
+///
+/// Batches are of the matchings nearest to integers in the last layout. Each may take one of the two
+/// integers next to it. A batch is rounded to the best integers found; where none are found, so much of it
+/// as the search had decided; and where it had decided nothing, the batch is halved. Returns the rotations of the faces in the last layout, in the gauge of the all-seam cut, and how
+/// it went.
+///
+/// # Errors
+/// [`Cancelled`].
+///
+/// # Source
+/// Levi 2021, supplement, section 10; there the program is given to a commercial solver.
+pub fn round_mixed_integer(
+    mesh: &TriMesh,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+    options: &MixedIntegerOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<Complex64>, MixedIntegerStats), Cancelled> {
+    let deadline = options.time_limit.map(|limit| Instant::now() + limit);
+    let limits = Limits { nodes: options.nodes.max(1), deadline, tolerance: options.tolerance };
+    let mut state = Rounding::begin(mesh, metric, matched);
+    let mut stats = MixedIntegerStats::default();
+    let most = options.batch.max(1);
+    let mut size = most;
+    loop {
+        let batch = state.nearest(size);
+        watch.tick(state.share_rounded())?;
+        let is_late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        if batch.is_empty() || is_late {
+            break;
+        }
+        let begun = Instant::now();
+        let found = state.choose(&batch, &limits, watch)?;
+        stats.batches.push(BatchStats {
+            integers: batch.len(),
+            nodes: found.nodes,
+            tau: found.incumbent.as_ref().map(|best| best.value),
+            bound: found.bound.clamp(1.0, MOST_TAU),
+            proven: found.is_exhausted && found.incumbent.is_some(),
+            seconds: begun.elapsed().as_secs_f64(),
+        });
+        let values =
+            found.incumbent.map(|best| (best.values.into_iter().map(Some).collect(), best.state));
+        match values.or(found.partial) {
+            Some((values, placed)) => {
+                state.take(&batch, &values, placed);
+                size = (2 * batch.len()).min(most);
+            }
+            None if batch.len() > 1 => size = batch.len() / 2,
+            // Neither integer has a layout with these frames, and no other choice would change that.
+            None => break,
+        }
+    }
+    let rest: Vec<usize> = state.open().collect();
+    stats.left_to_nearest += state.round_to_nearest(&rest);
+    let Rounding { rounded, placed, .. } = state;
+    for (r, rounded) in matched.matching.iter_mut().zip(rounded) {
+        *r = rounded.unwrap_or(*r);
+    }
+    Ok((placed.frames, stats))
+}
+
+/// Matchings on their way to integers.
+struct Rounding<'a> {
+    mesh: &'a TriMesh,
+    metric: &'a Metric,
+    matched: MatchedCut,
+    /// Integer of each seam that has one.
+    rounded: Vec<Option<i32>>,
+    /// Rotation of each seam in the last layout.
+    rotation: Vec<f64>,
+    /// The last layout.
+    placed: Placed,
+}
+
+impl<'a> Rounding<'a> {
+    /// From the isometric layout.
+    fn begin(mesh: &'a TriMesh, metric: &'a Metric, matched: &MatchedCut) -> Self {
+        let z = unfold(mesh, metric, &matched.tree, &matched.cut);
+        let corner = mesh.halfedges().map(|h| z[matched.cut.wedge[h] as usize]).collect();
+        let frames = frames_of_angles(mesh, metric, &metric.angle, &matched.tree);
+        Self {
+            mesh,
+            metric,
+            rounded: vec![None; matched.turning.len()],
+            rotation: matched.isometric.clone(),
+            placed: Placed { corner, frames },
+            matched: matched.clone(),
+        }
+    }
+
+    fn open(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rounded.len()).filter(|&seam| self.rounded[seam].is_none())
+    }
+
+    fn share_rounded(&self) -> f64 {
+        1.0 - self.open().count() as f64 / self.rounded.len().max(1) as f64
+    }
+
+    /// The open seams nearest to integers, so many at most, ascending.
+    fn nearest(&self, size: usize) -> Vec<usize> {
+        let distance = |seam: usize| {
+            let r = self.rotation[seam];
+            ((r - r.round()).abs() / SAME).round() as i64
+        };
+        let mut open: Vec<(i64, usize)> = self.open().map(|s| (distance(s), s)).collect();
+        open.sort_unstable();
+        let mut batch: Vec<usize> = open.into_iter().take(size).map(|(_, seam)| seam).collect();
+        batch.sort_unstable();
+        batch
+    }
+
+    /// Branch and bound over the integers of a batch.
+    fn choose(
+        &self,
+        batch: &[usize],
+        limits: &Limits,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Found<Placed>, Cancelled> {
+        let mut program = BatchProgram {
+            mesh: self.mesh,
+            metric: self.metric,
+            matched: &self.matched,
+            rounded: &self.rounded,
+            batch,
+            rotation: &self.rotation,
+            frames: &self.placed.frames,
+            tolerance: limits.tolerance,
+        };
+        let next = |&seam: &usize| two_nearest(self.rotation[seam]);
+        let choices: Vec<[i32; 2]> = batch.iter().map(next).collect();
+        search(&mut program, &choices, &self.placed, limits, watch)
+    }
+
+    /// Rounds what was decided of a batch and moves on to its layout.
+    fn take(&mut self, batch: &[usize], values: &[Option<i32>], placed: Placed) {
+        for (&seam, &value) in batch.iter().zip(values) {
+            self.rounded[seam] = value;
+        }
+        for seam in 0..self.rounded.len() {
+            if self.rounded[seam].is_none() {
+                let h = self.matched.turning[seam];
+                self.rotation[seam] = rotation(self.mesh, h, &placed.corner, self.rotation[seam]);
+            }
+        }
+        self.placed = placed;
+    }
+
+    fn round_to_nearest(&mut self, seams: &[usize]) -> usize {
+        for &seam in seams {
+            self.rounded[seam] = Some(self.rotation[seam].round() as i32);
+        }
+        seams.len()
+    }
+}
+
+/// The integers next to a rotation, the nearest first; a whole number has the next smaller one as well.
+fn two_nearest(rotation: f64) -> [i32; 2] {
+    // Rounding errors must not decide on which side of a whole number a rotation lies.
+    let nearest = rotation.round();
+    let is_above = rotation - nearest > SAME;
+    let nearest = nearest as i32;
+    [nearest, if is_above { nearest + 1 } else { nearest - 1 }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integers_next_to_a_rotation() {
+        assert_eq!(two_nearest(0.3), [0, 1]);
+        assert_eq!(two_nearest(-0.3), [0, -1]);
+        assert_eq!(two_nearest(2.7), [3, 2]);
+        assert_eq!(two_nearest(1e-12), two_nearest(-1e-12));
+    }
+}

@@ -1,0 +1,93 @@
+//! Features of the mesh and of its components, and the certificate of the whole.
+
+use super::MapError;
+use crate::features::{ReleaseReason, ReleasedFeature};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Component, Halfedge, TriMesh, Vertex};
+use std::collections::BTreeSet;
+
+/// The edges of a set in a component, in its own ids.
+pub fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
+    let local = |h: &Halfedge| {
+        let whole = piece.faces[h.face().at()].halfedge(h.side());
+        edges.contains(whole)
+    };
+    EdgeSet::new(&piece.mesh, piece.mesh.halfedges().filter(local))
+}
+
+/// What became of the features of all components, in the ids of the whole mesh.
+#[derive(Debug, Default)]
+pub(super) struct Outcome {
+    kept: Vec<Halfedge>,
+    released: Vec<ReleasedFeature>,
+}
+
+/// A certified map of all components, with what became of the features.
+pub(super) struct Whole {
+    pub(super) map: SeamlessMap,
+    pub(super) features: EdgeSet,
+    pub(super) alignment: Alignment,
+    pub(super) released: Vec<ReleasedFeature>,
+}
+
+impl Outcome {
+    /// Adds those of a component, given in its own ids.
+    pub(super) fn add(&mut self, piece: &Component, kept: &EdgeSet, released: &[ReleasedFeature]) {
+        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
+        self.kept.extend(kept.edges().iter().map(whole));
+        self.released.extend(released.iter().map(|feature| ReleasedFeature {
+            vertices: feature.vertices.map(|v| piece.vertices[Vertex(v)].0),
+            ..*feature
+        }));
+    }
+
+    /// Certifies the map of all components; if it is strict about features, none may be released.
+    ///
+    /// # Errors
+    /// [`MapError::Released`] or [`MapError::Uncertified`].
+    pub(super) fn certify(
+        self,
+        mesh: &TriMesh,
+        corner_uvs: Vec<[f64; 2]>,
+        is_strict: bool,
+        tolerance: &Tolerance,
+    ) -> Result<Whole, MapError> {
+        let Self { kept, released } = self;
+        if is_strict && !released.is_empty() {
+            return Err(MapError::Released { released });
+        }
+        let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
+        let features = EdgeSet::new(mesh, kept);
+        let pairs = features.vertex_pairs(mesh);
+        let alignment = Alignment::certify(mesh, &map, &pairs, &AlignmentTolerance::default())?;
+        Ok(Whole { map, features, alignment, released })
+    }
+}
+
+/// The features that run along the axes of a map, and the others.
+///
+/// # Errors
+/// Sectors of the former whose angle is no positive number of quarter turns.
+pub(super) fn followed(
+    mesh: &TriMesh,
+    map: &SeamlessMap,
+    features: EdgeSet,
+) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
+    let tolerance = AlignmentTolerance::default();
+    let Err(Violations(found)) =
+        Alignment::certify(mesh, map, &features.vertex_pairs(mesh), &tolerance)
+    else {
+        return Ok((features, Vec::new()));
+    };
+    let off_axis = |violation: &Violation| match *violation {
+        Violation::OffAxis { vertices, .. } => Some(vertices),
+        _ => None,
+    };
+    let off: BTreeSet<[u32; 2]> = found.iter().filter_map(off_axis).collect();
+    let edge = |&[a, b]: &[u32; 2]| mesh.edge_between(Vertex(a), Vertex(b));
+    let kept = features.without(mesh, off.iter().filter_map(edge));
+    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), &tolerance)?;
+    let reason = ReleaseReason::NotInMap;
+    Ok((kept, off.into_iter().map(|vertices| ReleasedFeature { vertices, reason }).collect()))
+}

@@ -1,0 +1,211 @@
+//! Laying a given map out anew, for another objective.
+
+use super::component::corner_uvs;
+use super::parts::{Outcome, Whole, followed, in_component};
+use super::{MapError, by_component};
+use crate::features::{ReleasedFeature, Sectors};
+use crate::layout::anisotropy::Anisotropy;
+use crate::layout::disk::{embed_disk, is_disk};
+use crate::layout::energy::SymmetricDirichlet;
+use crate::layout::exact::ExactLayout;
+use crate::layout::newton::NewtonOptions;
+use crate::layout::objective::{
+    ConicStats, Ending, Objective, ObjectiveOptions, Optimized, optimize,
+};
+use crate::layout::safeguards::LayoutError;
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
+use crate::progress::{Observer, Stage, Watch};
+use crate::quality::{Distortion, distortion};
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Component, Metric, TriMesh};
+
+/// Settings of [`relayout`] and [`lay_out_disk`].
+#[derive(Debug, Clone)]
+pub struct RelayoutOptions {
+    /// What to minimise.
+    pub objective: Objective,
+    /// How.
+    pub settings: ObjectiveOptions,
+    /// Stretches that count as no distortion; none by default.
+    pub anisotropy: Option<Anisotropy>,
+    /// Edges that run along the axes of the map and have to stay there; none by default. Those that do not
+    /// run there are released.
+    pub features: Option<EdgeSet>,
+    /// Whether a released feature is an error ([`MapError::Released`]) rather than a line in the result.
+    pub strict_features: bool,
+    /// Tolerance of the certificate, for the map given and the one returned.
+    pub tolerance: Tolerance,
+}
+
+impl RelayoutOptions {
+    /// Default settings for an objective.
+    pub fn new(objective: Objective) -> Self {
+        Self {
+            objective,
+            settings: ObjectiveOptions::default(),
+            anisotropy: None,
+            features: None,
+            strict_features: false,
+            tolerance: Tolerance::default(),
+        }
+    }
+}
+
+/// A certified map laid out for an objective.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Relayout {
+    /// The map; UVs in mesh units, at the global scale of the objective's measure.
+    pub map: SeamlessMap,
+    /// Its distortion.
+    pub distortion: Distortion,
+    /// The edges that run along the axes: the features asked for, except those released.
+    pub features: EdgeSet,
+    /// The certificate of their alignment.
+    pub alignment: Alignment,
+    /// Features that did not run along an axis of the map given.
+    pub released: Vec<ReleasedFeature>,
+    /// One entry per connected component, in order of first faces.
+    pub components: Vec<RelayoutStats>,
+}
+
+/// How one component was laid out.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct RelayoutStats {
+    /// Faces.
+    pub faces: usize,
+    /// The objective's figure of the map given (or, for a disk without one, of its first layout).
+    pub before: f64,
+    /// The same figure now.
+    pub after: f64,
+    /// Iterations of the objective's outer loop.
+    pub iterations: usize,
+    /// How they ended.
+    pub ending: Ending,
+    /// How the conic programs were solved, if there were any.
+    pub conic: Option<ConicStats>,
+}
+
+/// Lays a seamless map out anew for an objective, with its matchings and cones. Its seams may come to lie
+/// elsewhere; features keep their axes, and their corners their angles.
+///
+/// # Errors
+/// [`MapError`]; never an uncertified map.
+pub fn relayout(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    map: &SeamlessMap,
+    options: &RelayoutOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Relayout, MapError> {
+    run(mesh, positions, options, observer, |piece, _, watch| {
+        watch.enter(Stage::Cut)?;
+        let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
+        SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
+            .map_err(LayoutError::Uncertified)
+    })
+}
+
+/// Lays out disks with a free boundary, without seams or cones. Features can hardly be had this way: they
+/// need a map that follows them.
+///
+/// # Errors
+/// [`MapError`], also when a component is not a disk; never an uncertified map.
+pub fn lay_out_disk(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    options: &RelayoutOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Relayout, MapError> {
+    run(mesh, positions, options, observer, |piece, metric, watch| {
+        watch.enter(Stage::Cut)?;
+        if !is_disk(&piece.mesh) {
+            return Err(LayoutError::NotADisk);
+        }
+        let uvs = embed_disk(&piece.mesh, metric)?;
+        let embedded = SeamlessMap::certify(&piece.mesh, uvs, &options.tolerance)
+            .map_err(LayoutError::Uncertified)?;
+        let (mut layout, y) = ExactLayout::from_map(&piece.mesh, metric, &embedded)?;
+        if !layout.defects(&Sectors::unaligned(&piece.mesh), &y).none() {
+            return Ok(embedded);
+        }
+        let mut y = y;
+        layout.rescale(&mut y);
+        let y = layout.minimize(y, &SymmetricDirichlet, &SETTLE_DISK, watch)?.y;
+        let relaxed = corner_uvs(&piece.mesh, metric, &layout, &y);
+        Ok(SeamlessMap::certify(&piece.mesh, relaxed, &options.tolerance).unwrap_or(embedded))
+    })
+}
+
+/// From the circle to a layout that all objectives can start from.
+const SETTLE_DISK: NewtonOptions = NewtonOptions { max_iterations: 100, tolerance: 1e-6 };
+
+/// Runs the objective on every component from the map that `start` gives.
+fn run(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    options: &RelayoutOptions,
+    observer: &mut Observer<'_>,
+    start: impl Fn(&Component, &Metric, &mut Watch<'_, '_>) -> Result<SeamlessMap, LayoutError>,
+) -> Result<Relayout, MapError> {
+    let none = EdgeSet::new(mesh, []);
+    let asked = options.features.as_ref().unwrap_or(&none);
+    let mut outcome = Outcome::default();
+    let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
+        let here: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        let metric = Metric::from_positions(&piece.mesh, &here);
+        let map = start(piece, &metric, watch)?;
+        let (kept, released) = followed(&piece.mesh, &map, in_component(asked, piece))
+            .map_err(LayoutError::Uncertified)?;
+        outcome.add(piece, &kept, &released);
+        improve(piece, &metric, &map, &kept, options, watch)
+    })?;
+    let Whole { map, features, alignment, released } =
+        outcome.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
+    let metric = Metric::from_positions(mesh, positions);
+    let distortion = distortion(mesh, &metric, map.corner_uvs());
+    Ok(Relayout { map, distortion, features, alignment, released, components })
+}
+
+/// Minimises the objective from a map; gives the map back if nothing certified comes out of it.
+fn improve(
+    piece: &Component,
+    metric: &Metric,
+    map: &SeamlessMap,
+    features: &EdgeSet,
+    options: &RelayoutOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<[f64; 2]>, RelayoutStats), LayoutError> {
+    let mesh = &piece.mesh;
+    let sectors = Sectors::new(mesh, metric, features);
+    let (mut layout, y) = ExactLayout::from_aligned_map(&sectors, metric, map)?;
+    if let Some(anisotropy) = &options.anisotropy {
+        layout.problem_mut().stretch(&anisotropy.of_faces(&piece.faces));
+    }
+    watch.enter(Stage::Objective)?;
+    let defects = layout.defects(&sectors, &y);
+    if !defects.none() {
+        // The map holds in floating point, but not the layout that closes its seams exactly.
+        return Err(LayoutError::Defective(defects));
+    }
+    let Optimized { y, value, before, iterations, ending, conic } =
+        optimize(&sectors, &mut layout, y, options.objective, &options.settings, watch)?;
+    let stats = |after, ending| RelayoutStats {
+        faces: mesh.n_faces(),
+        before,
+        after,
+        iterations,
+        ending,
+        conic,
+    };
+    let uvs = corner_uvs(mesh, metric, &layout, &y);
+    let pairs = features.vertex_pairs(mesh);
+    let is_aligned = |map: &SeamlessMap| {
+        Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default()).is_ok()
+    };
+    match SeamlessMap::certify(mesh, uvs, &options.tolerance).ok().filter(is_aligned) {
+        Some(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
+        None => Ok((map.corner_uvs().to_vec(), stats(before, Ending::NoGain))),
+    }
+}

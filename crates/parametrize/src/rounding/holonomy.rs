@@ -1,0 +1,263 @@
+//! Choosing the rotations around handles and between boundaries for fixed cones.
+
+use super::matched::MatchedCut;
+use crate::features::Sectors;
+use rayon::prelude::*;
+use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_mesh::{Halfedge, Metric, Vertex};
+use std::collections::VecDeque;
+
+/// Weights of dual edges are inverse cotangent sums, these kept in this range.
+const COTANGENT_RANGE: (f64, f64) = (0.1, 10.0);
+/// Passes of the integer descent.
+const PASSES: usize = 50;
+
+/// Re-chooses the circulations of the matchings, which no cone sees: moving cones changes how much a
+/// loop around a handle turns, and the best integers change with it.
+///
+/// The matchings' difference to the isometric rotations is a flow on dual edges; what remains of it
+/// after the best rotation of every face is its divergence-free part, whose weighted square is made
+/// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too).
+/// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
+/// moves. Returns how many cycles changed.
+///
+/// # Errors
+/// When the face Laplacian cannot be factored.
+pub fn fix_holonomy(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+) -> Result<usize, NotPositiveDefinite> {
+    let cycles = turning_cycles(sectors, matched);
+    if cycles.is_empty() {
+        return Ok(0);
+    }
+    let projector = Projector::new(sectors, metric, matched)?;
+    let flow: Vec<(u32, f64)> = matched
+        .matching
+        .iter()
+        .zip(&matched.isometric)
+        .enumerate()
+        .map(|(s, (&r, r0))| (s as u32, r0 - f64::from(r)))
+        .collect();
+    let target = projector.residual(&flow);
+    let columns: Vec<Vec<f64>> = cycles
+        .par_iter()
+        .map(|cycle| {
+            let flow: Vec<_> = cycle.iter().map(|&(s, sign)| (s, f64::from(sign))).collect();
+            projector.residual(&flow)
+        })
+        .collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let gram: Vec<Vec<f64>> =
+        columns.par_iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+    let rhs: Vec<f64> = columns.iter().map(|a| dot(a, &target)).collect();
+    let multiples = closest_integers(&gram, &rhs);
+    for (cycle, &n) in cycles.iter().zip(&multiples) {
+        for &(s, sign) in cycle {
+            matched.matching[s as usize] += sign * n;
+        }
+    }
+    Ok(multiples.iter().filter(|&&n| n != 0).count())
+}
+
+/// A basis of the cycles of the graph of turning edges, the free sectors merged to one: signed edges.
+fn turning_cycles(sectors: &Sectors<'_>, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
+    let slit = sectors.slit();
+    let free = slit.n_vertices() as u32;
+    let id = |s: Vertex| if sectors.is_free(s) { free } else { s.0 };
+    let ends: Vec<[u32; 2]> =
+        matched.turning.iter().map(|&h| [id(slit.origin(h)), id(slit.tip(h))]).collect();
+    let mut at = vec![Vec::new(); slit.n_vertices() + 1];
+    for (s, &[a, b]) in ends.iter().enumerate() {
+        at[a as usize].push((b, s as u32, 1));
+        at[b as usize].push((a, s as u32, -1));
+    }
+    // Breadth-first forest: (parent, seam, sign of walking from the parent), depth.
+    let mut parent: Vec<Option<(u32, u32, i32)>> = vec![None; at.len()];
+    let mut depth = vec![u32::MAX; at.len()];
+    let mut in_forest = vec![false; ends.len()];
+    for start in (0..at.len()).rev() {
+        if depth[start] != u32::MAX {
+            continue;
+        }
+        depth[start] = 0;
+        let mut queue = VecDeque::from([start as u32]);
+        while let Some(v) = queue.pop_front() {
+            for &(w, s, sign) in &at[v as usize] {
+                if depth[w as usize] == u32::MAX {
+                    depth[w as usize] = depth[v as usize] + 1;
+                    parent[w as usize] = Some((v, s, sign));
+                    in_forest[s as usize] = true;
+                    queue.push_back(w);
+                }
+            }
+        }
+    }
+    let close = |s: usize| {
+        // The seam from a to b, then back from b to a through the forest.
+        let [mut a, mut b] = ends[s];
+        let mut cycle = vec![(s as u32, 1)];
+        while a != b {
+            let from_b = depth[b as usize] >= depth[a as usize];
+            let Some((up, seam, sign)) = parent[if from_b { b } else { a } as usize] else {
+                break;
+            };
+            cycle.push((seam, if from_b { -sign } else { sign }));
+            if from_b {
+                b = up;
+            } else {
+                a = up;
+            }
+        }
+        cycle
+    };
+    (0..ends.len()).filter(|&s| !in_forest[s]).map(close).collect()
+}
+
+/// Projects flows on dual edges to their part that no rotation of faces can remove; the ground does not
+/// rotate.
+struct Projector {
+    /// Faces on the left and right of each dual edge; the ground follows on the faces.
+    sides: Vec<[u32; 2]>,
+    /// Dual edge of each turning edge.
+    of_turning: Vec<u32>,
+    weights: Vec<f64>,
+    nodes: usize,
+    cholesky: Cholesky<f64>,
+}
+
+impl Projector {
+    fn new(
+        sectors: &Sectors<'_>,
+        metric: &Metric,
+        matched: &MatchedCut,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let slit = sectors.slit();
+        let ground = slit.n_faces() as u32;
+        let nodes = slit.n_faces() + usize::from(sectors.any_aligned());
+        let edges: Vec<Halfedge> = slit.interior_edges().chain(sectors.aligned()).collect();
+        let cotangent = metric.cotangent();
+        let side = |h: Halfedge| [h.face().0, slit.twin(h).map_or(ground, |t| t.face().0)];
+        let sides: Vec<[u32; 2]> = edges.iter().map(|&h| side(h)).collect();
+        let weights: Vec<f64> = edges
+            .iter()
+            .map(|&h| {
+                let sum = cotangent[h] + slit.twin(h).map_or(0.0, |t| cotangent[t]);
+                2.0 / sum.clamp(COTANGENT_RANGE.0, COTANGENT_RANGE.1)
+            })
+            .collect();
+        let pattern = dual_pattern(nodes, sides.iter().copied());
+        let pairs = sides.iter().map(|&[f, g]| (f, g));
+        let order = nested_dissection(&Graph::from_edges(nodes, pairs));
+        let mut matrix = vec![0.0; pattern.len()];
+        for &k in pattern.diagonal() {
+            matrix[k as usize] = 1e-10;
+        }
+        for (&[f, g], weight) in sides.iter().zip(&weights) {
+            matrix[pattern.diagonal()[f as usize] as usize] += weight;
+            matrix[pattern.diagonal()[g as usize] as usize] += weight;
+            if let Some(slot) = pattern.slot(f, g) {
+                matrix[slot as usize] -= weight;
+            }
+        }
+        let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+        cholesky.factorize(&pattern, &matrix)?;
+        let mut number = vec![0u32; slit.n_halfedges()];
+        edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
+        let of_turning = matched.turning.iter().map(|&h| number[h.at()]).collect();
+        Ok(Self { sides, of_turning, weights, nodes, cholesky })
+    }
+
+    /// Square root of the weight times the remaining flow, per dual edge.
+    fn residual(&self, flow: &[(u32, f64)]) -> Vec<f64> {
+        let mut x = vec![0.0; self.sides.len()];
+        for &(e, value) in flow {
+            x[self.of_turning[e as usize] as usize] += value;
+        }
+        let mut turn = vec![0.0; self.nodes];
+        for ((&[left, right], x), w) in self.sides.iter().zip(&x).zip(&self.weights) {
+            turn[right as usize] += w * x;
+            turn[left as usize] -= w * x;
+        }
+        // The only failure is memory, which the factor needed far more of.
+        let _ = self.cholesky.solve_columns(&mut turn, 1);
+        for ((&[left, right], x), w) in self.sides.iter().zip(&mut x).zip(&self.weights) {
+            *x = (*x - (turn[right as usize] - turn[left as usize])) * w.sqrt();
+        }
+        x
+    }
+}
+
+fn dual_pattern(n_faces: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Pattern {
+    let mut builder = PatternBuilder::new(n_faces);
+    pairs.for_each(|pair| builder.add_clique(&pair));
+    builder.build()
+}
+
+/// Integers that make `n' Q n - 2 b' n` small: rounding of the minimum or zero, whichever leads lower,
+/// then descent over single and pair moves.
+fn closest_integers(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
+    let starts = [round_real_minimum(q, b), vec![0; b.len()]];
+    let energy = |n: &[i32]| {
+        let value = |i: usize| {
+            let row: f64 = q[i].iter().zip(n).map(|(q, &n)| q * f64::from(n)).sum();
+            f64::from(n[i]) * (row - 2.0 * b[i])
+        };
+        (0..n.len()).map(value).sum::<f64>()
+    };
+    let [first, second] = starts.map(|start| descend(q, b, start));
+    if energy(&second) < energy(&first) { second } else { first }
+}
+
+/// Rounded solution of `Q n = b` (Gauss-Seidel: Q is well conditioned and small).
+fn round_real_minimum(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
+    let mut x = vec![0.0; b.len()];
+    for _ in 0..200 {
+        for i in 0..b.len() {
+            let row: f64 = q[i].iter().zip(&x).map(|(q, x)| q * x).sum();
+            x[i] += (b[i] - row) / q[i][i].max(1e-12);
+        }
+    }
+    x.into_iter().map(|x| x.round().clamp(-1e6, 1e6) as i32).collect()
+}
+
+fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
+    // Half the gradient.
+    let mut g: Vec<f64> = (0..b.len())
+        .map(|i| q[i].iter().zip(&n).map(|(q, &n)| q * f64::from(n)).sum::<f64>() - b[i])
+        .collect();
+    let step = |n: &mut [i32], g: &mut [f64], i: usize, by: i32| {
+        n[i] += by;
+        g.iter_mut().zip(q).for_each(|(g, row)| *g += f64::from(by) * row[i]);
+    };
+    for _ in 0..PASSES {
+        let mut improved = false;
+        for i in 0..b.len() {
+            let by = (-g[i] / q[i][i].max(1e-12)).round() as i32;
+            if by != 0 {
+                step(&mut n, &mut g, i, by);
+                improved = true;
+            }
+            for j in 0..i {
+                for (si, sj) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+                    let change = 2.0 * (f64::from(si) * g[i] + f64::from(sj) * g[j])
+                        + q[i][i]
+                        + q[j][j]
+                        + 2.0 * f64::from(si * sj) * q[i][j];
+                    if change < -1e-9 {
+                        step(&mut n, &mut g, i, si);
+                        step(&mut n, &mut g, j, sj);
+                        improved = true;
+                        break;
+                    }
+                }
+            }
+        }
+        if !improved {
+            break;
+        }
+    }
+    n
+}

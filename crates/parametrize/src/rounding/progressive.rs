@@ -1,0 +1,218 @@
+//! The rounding loop of the direct method.
+
+use super::matched::MatchedCut;
+use super::patch::LocalEstimate;
+use super::relaxation::Relaxation;
+use super::weights::SectorWeights;
+use crate::features::Sectors;
+use crate::layout::homotopy::HomotopyError;
+use crate::layout::isometric::unfold;
+use crate::mixed_integer::MixedIntegerOptions;
+use crate::progress::Watch;
+use num_complex::Complex64;
+use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
+
+/// How the size of a rounding is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RoundingStrategy {
+    /// By the angle it turns the seam.
+    #[default]
+    ConeBias,
+    /// By the change of energy it makes on a small patch around the seam, the seed's local estimation.
+    LocalEstimation,
+    /// By programs in which matchings are integer variables, see [`crate::mixed_integer`]. Components with
+    /// aligned edges, and those for which it leads to no layout, are rounded by [`Self::ConeBias`].
+    MixedInteger,
+}
+
+/// Settings of the rounding loop.
+#[derive(Debug, Clone, Copy)]
+pub struct RoundingOptions {
+    /// How the size of a rounding is judged.
+    pub strategy: RoundingStrategy,
+    /// How much a rounding that makes cones costs, against one that only turns: 0 gives the lowest
+    /// distortion and two to five times the cones, one half the cones for about 0.02 of energy. At one
+    /// half, cancelling a pair of unit cones by a whole turn costs as little as not turning at all (the
+    /// smaller turn wins); beyond it cones are cancelled where they belong.
+    pub cone_bias: f64,
+    /// The same at corners: sectors between two aligned edges. Larger values make corners keep to the
+    /// whole number of quarters nearest to their angle, at a price in distortion.
+    pub corner_weight: f64,
+    /// Rounds over which the threshold on the cost grows to its last value.
+    pub rounds: usize,
+    /// Layout iterations per round.
+    pub layout_iterations: usize,
+    /// Settings of [`RoundingStrategy::MixedInteger`].
+    pub mixed_integer: MixedIntegerOptions,
+}
+
+impl Default for RoundingOptions {
+    fn default() -> Self {
+        Self {
+            strategy: RoundingStrategy::default(),
+            cone_bias: 0.5,
+            corner_weight: 1.0,
+            rounds: 60,
+            layout_iterations: 8,
+            mixed_integer: MixedIntegerOptions::default(),
+        }
+    }
+}
+
+/// What the rounding loop did.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RoundingStats {
+    /// Rounds run.
+    pub rounds: usize,
+    /// Layouts computed.
+    pub layouts: usize,
+}
+
+/// Cost threshold of the first and last round.
+const FIRST_THRESHOLD: f64 = 0.05;
+const LAST_THRESHOLD: f64 = 1.0;
+/// Costs closer than this are the same.
+const SAME_COST: f64 = 1e-9;
+/// A new layout is worth its time once this share of the seams was rounded.
+const LAYOUT_SHARE: f64 = 0.005;
+/// Roundings that turn an edge by more than this (quarters) keep apart within a round.
+const LARGE_TURN: f64 = 0.1;
+
+/// Rounds the matchings of all turning edges, cheapest first, laying the mesh out again after each round
+/// that changed enough.
+///
+/// The cost of turning an edge of rotation r by d = i - r to the integer i, with k the real indices of
+/// its ends less the preferred ones, is `size(d) + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves
+/// curvature from one end to the other, and the second term is the change of total absolute curvature. At
+/// corners the bias is the corner weight, and what leads out of the bounds of the index costs more still.
+/// Returns the rotations of the faces in the last layout of the all-seam cut.
+pub fn round(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+    options: &RoundingOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Vec<Complex64>, RoundingStats), HomotopyError> {
+    let slit = sectors.slit();
+    let z = unfold(slit, metric, &matched.tree, &matched.cut);
+    let mut relaxation = Relaxation::new(sectors, metric, matched, z)?;
+    let weights = SectorWeights::new(sectors, options);
+    let mut rotation = matched.isometric.clone();
+    let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
+    let total = open.len().max(1) as f64;
+    let mut stats = RoundingStats::default();
+    let mut since_layout = 0;
+    let mut estimate: Option<(LocalEstimate, VertexData<f64>)> = None;
+    while !open.is_empty() {
+        watch.tick(1.0 - open.len() as f64 / total)?;
+        let growth = stats.rounds as f64 / (options.rounds.max(2) - 1) as f64;
+        let threshold = if growth < 1.0 {
+            FIRST_THRESHOLD + (LAST_THRESHOLD - FIRST_THRESHOLD) * growth
+        } else {
+            f64::INFINITY
+        };
+        let index = matched.indices(sectors, metric, &rotation);
+        let cost = |edge: u32, turn: f64| {
+            let size = match &estimate {
+                Some((patches, log_scale)) => patches.size(edge, turn, log_scale),
+                None => turn.abs(),
+            };
+            let h = matched.turning[edge as usize];
+            let (o, d) = (slit.origin(h), slit.tip(h));
+            size + (weights.change(o, index[o], -turn) + weights.change(d, index[d], turn))
+        };
+        let chosen = choose(slit, &matched.turning, &rotation, &open, threshold, cost);
+        stats.rounds += 1;
+        if chosen.is_empty() {
+            continue;
+        }
+        for &(edge, integer) in &chosen {
+            matched.matching[edge as usize] = integer;
+            rotation[edge as usize] = f64::from(integer);
+            relaxation.close(edge as usize, integer);
+        }
+        let mut is_chosen = vec![false; rotation.len()];
+        chosen.iter().for_each(|&(edge, _)| is_chosen[edge as usize] = true);
+        open.retain(|&edge| !is_chosen[edge as usize]);
+        since_layout += chosen.len();
+        if (since_layout as f64) < LAYOUT_SHARE * total && !open.is_empty() {
+            continue;
+        }
+        since_layout = 0;
+        relaxation.relax(options.layout_iterations)?;
+        stats.layouts += 1;
+        if options.strategy == RoundingStrategy::LocalEstimation {
+            // Most edges are rounded at first sight; the patches of the others are worth solving.
+            let patches = match estimate {
+                Some((patches, _)) => patches,
+                None => LocalEstimate::new(sectors, metric, &matched.turning, &open),
+            };
+            estimate = Some((patches, relaxation.log_scale(slit, metric)));
+        }
+        for &edge in &open {
+            let r = &mut rotation[edge as usize];
+            *r = relaxation.rotation(edge as usize, *r);
+        }
+    }
+    Ok((relaxation.frames(), stats))
+}
+
+/// The open edges to round now, with their integers: cost within the threshold, cheapest first, large
+/// turns at least a sector apart.
+fn choose(
+    mesh: &TriMesh,
+    turning: &[Halfedge],
+    rotation: &[f64],
+    open: &[u32],
+    threshold: f64,
+    cost: impl Fn(u32, f64) -> f64,
+) -> Vec<(u32, i32)> {
+    let mut candidates: Vec<Candidate> = open
+        .iter()
+        .filter_map(|&edge| {
+            let r = rotation[edge as usize];
+            let cost = |integer: f64| cost(edge, integer - r);
+            let option = |integer: f64| Candidate {
+                cost: cost(integer),
+                turn: (integer - r).abs(),
+                edge,
+                integer: integer as i32,
+            };
+            let (low, high) = (option(r.floor()), option(r.ceil()));
+            let best = if high.key() < low.key() { high } else { low };
+            (best.cost <= threshold).then_some(best)
+        })
+        .collect();
+    candidates.sort_unstable_by_key(Candidate::key);
+    let mut used = VertexData::filled(mesh.n_vertices(), false);
+    candidates.retain(|candidate| {
+        if candidate.turn <= LARGE_TURN {
+            return true;
+        }
+        let h = turning[candidate.edge as usize];
+        let (o, d) = (mesh.origin(h), mesh.tip(h));
+        let free = !used[o] && !used[d];
+        used[o] |= free;
+        used[d] |= free;
+        free
+    });
+    candidates.into_iter().map(|c| (c.edge, c.integer)).collect()
+}
+
+/// A rounding; its key orders by cost, then by how little it turns, then by id. Costs and turns that differ by
+/// rounding errors only count as equal: these must not decide.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    cost: f64,
+    turn: f64,
+    edge: u32,
+    integer: i32,
+}
+
+impl Candidate {
+    fn key(&self) -> (i64, i64, u32, i32) {
+        let coarse = |x: f64| (x / SAME_COST).round() as i64;
+        (coarse(self.cost), coarse(self.turn), self.edge, self.integer)
+    }
+}

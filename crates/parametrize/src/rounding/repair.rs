@@ -1,0 +1,95 @@
+//! Making the indices of all sectors possible for triangles.
+
+use super::matched::MatchedCut;
+use crate::features::Sectors;
+use seamstress_mesh::{Metric, Vertex, VertexData};
+use std::collections::VecDeque;
+
+/// Smallest and largest index, in quarters, that an interior vertex of this valence should get: its
+/// angle `(4 - k) pi / 2` is a quarter turn at least and less than 130 degrees per corner (a vertex of
+/// valence 3 with k = -2 is impossible, and with -1 already costs dearly).
+pub fn index_bounds(valence: usize) -> (i32, i32) {
+    let most_quarters = (1.44 * valence as f64).ceil() as i32 - 1;
+    (4 - most_quarters.max(1), 3)
+}
+
+/// Shifts matchings until every index is within its bounds; returns how many shifts it took, and the
+/// sectors that stay out of bounds.
+///
+/// A sector out of bounds passes one unit along the shortest path of turning edges to a sector that can
+/// take it; free ones always can.
+pub fn repair(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    matched: &mut MatchedCut,
+) -> (usize, Vec<Vertex>) {
+    let slit = sectors.slit();
+    let mut index = matched.sector_indices(sectors, metric);
+    let bounds: VertexData<(i32, i32)> = slit.vertices().map(|s| sectors.bounds(s)).collect();
+    let excess = |index: &VertexData<i32>, s: Vertex| {
+        let (low, high) = bounds[s];
+        if sectors.is_free(s) { 0 } else { (index[s] - high).max(0) - (low - index[s]).max(0) }
+    };
+    let mut turning_at = VertexData::filled(slit.n_vertices(), Vec::new());
+    for (e, &h) in matched.turning.iter().enumerate() {
+        // Raising the matching moves a unit of index from the origin to the tip.
+        turning_at[slit.origin(h)].push((e, slit.tip(h), 1));
+        turning_at[slit.tip(h)].push((e, slit.origin(h), -1));
+    }
+    let (mut shifts, mut hopeless) = (0, Vec::new());
+    for start in slit.vertices() {
+        while excess(&index, start) != 0 {
+            let unit = excess(&index, start).signum();
+            let takes = |s: Vertex| {
+                let after = index[s] + unit;
+                sectors.is_free(s) || (bounds[s].0..=bounds[s].1).contains(&after)
+            };
+            let Some(path) = shortest_path(&turning_at, start, takes) else {
+                hopeless.push(start);
+                break;
+            };
+            for (e, from, to, sign) in path {
+                matched.matching[e] += sign * unit;
+                for (s, change) in [(from, -unit), (to, unit)] {
+                    if !sectors.is_free(s) {
+                        index[s] += change;
+                    }
+                }
+                shifts += 1;
+            }
+        }
+    }
+    (shifts, hopeless)
+}
+
+type Step = (usize, Vertex, Vertex, i32);
+
+/// Breadth-first path over turning edges from a sector to the nearest other one that satisfies a
+/// condition.
+fn shortest_path(
+    turning_at: &VertexData<Vec<(usize, Vertex, i32)>>,
+    start: Vertex,
+    goal: impl Fn(Vertex) -> bool,
+) -> Option<Vec<Step>> {
+    let mut from: VertexData<Option<Step>> = VertexData::filled(turning_at.len(), None);
+    let mut queue = VecDeque::from([start]);
+    while let Some(v) = queue.pop_front() {
+        if v != start && goal(v) {
+            let mut path = Vec::new();
+            let mut at = v;
+            while let Some(step) = from[at].filter(|_| at != start) {
+                path.push(step);
+                at = step.1;
+            }
+            path.reverse();
+            return Some(path);
+        }
+        for &(e, w, sign) in &turning_at[v] {
+            if w != start && from[w].is_none() {
+                from[w] = Some((e, v, w, sign));
+                queue.push_back(w);
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,107 @@
+//! Moving the integral part of a layout without flipping a triangle.
+
+use super::reduced::couple;
+use seamstress_parametrize::layout::energy::SymmetricDirichlet;
+use seamstress_parametrize::layout::newton::{NewtonOptions, minimize};
+use seamstress_parametrize::layout::problem::LayoutProblem;
+use seamstress_parametrize::layout::triangle::largest_step;
+use seamstress_parametrize::progress::{Cancelled, Watch};
+
+/// Most moves.
+const MOST_MOVES: usize = 30;
+/// Share of the largest flip-free step that is taken.
+const STEP_FRACTION: f64 = 0.9;
+/// What a move may raise the energy to: by this factor, or by 1 (an isometry has 4).
+const ENERGY_GROWTH: f64 = 1.6;
+/// Moves shorter than this are followed by centring steps.
+const SHORT_MOVE: f64 = 0.5;
+const CENTRING: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e-4 };
+/// The way is blocked after this many moves of less than a fiftieth of the rest.
+const TINY_MOVE: f64 = 0.02;
+const MOST_TINY_MOVES: usize = 6;
+const SMALLEST_MOVE: f64 = 1e-6;
+/// The way is also blocked where the layout becomes flat: where with this share left a short move raises an
+/// energy above this by this factor.
+const CLOSE: f64 = 0.1;
+const HIGH: f64 = 20.0;
+const STEEP: f64 = 1.1;
+const SHIFT: f64 = 1e-8;
+
+/// How far the integral part came.
+#[derive(Debug, Clone)]
+pub struct Advance {
+    /// The unknowns there, flip-free.
+    pub y: Vec<f64>,
+    /// Share of the way; 1 is the target, to the last bit.
+    pub reached: f64,
+    /// Number of moves.
+    pub moves: usize,
+}
+
+/// Moves the held unknowns to `target`, the free ones along with them, as far as triangles let them.
+///
+/// Each move is the Newton step of the symmetric Dirichlet energy under the condition that the held part
+/// goes all the way, `H_xx dx = -(g + H d)_x`, cut short of the first collapse and where the energy
+/// would rise too much; after a short one, Newton steps centre the rest.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn advance(
+    problem: &mut LayoutProblem,
+    mut y: Vec<f64>,
+    target: &[f64],
+    watch: &mut Watch<'_, '_>,
+) -> Result<Advance, Cancelled> {
+    let n_free = problem.n_free();
+    let (mut rest, mut tiny, mut moves) = (1.0, 0, 0);
+    let mut energy = f64::INFINITY;
+    while moves < MOST_MOVES && tiny < MOST_TINY_MOVES {
+        watch.pulse()?;
+        let Some(taken) = advance_once(problem, &mut y, target) else { break };
+        moves += 1;
+        rest *= 1.0 - taken;
+        if taken == 1.0 {
+            // To the last bit.
+            y[n_free..].copy_from_slice(target);
+            break;
+        }
+        if taken < SHORT_MOVE {
+            y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
+            let before = energy;
+            energy = problem.value(&SymmetricDirichlet, &problem.space().expand(&y));
+            if rest < CLOSE && energy > HIGH.max(STEEP * before) {
+                break;
+            }
+        }
+        tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
+    }
+    Ok(Advance { y, reached: 1.0 - rest, moves })
+}
+
+/// One move; the share of the rest of the way that was taken.
+fn advance_once(problem: &mut LayoutProblem, y: &mut [f64], target: &[f64]) -> Option<f64> {
+    let n_free = problem.n_free();
+    let z = problem.space().expand(y);
+    let energy = problem.value(&SymmetricDirichlet, &z);
+    let mut step = problem.linearize(&SymmetricDirichlet, &z);
+    problem.factorize(SHIFT).ok()?;
+    let way: Vec<f64> = target.iter().zip(&y[n_free..]).map(|(t, y)| t - y).collect();
+    for (s, coupled) in step.iter_mut().zip(couple(problem, &way)) {
+        *s = -(*s + coupled);
+    }
+    problem.solve(&mut step);
+    step[n_free..].copy_from_slice(&way);
+    let dz = problem.space().expand(&step);
+    let largest = STEP_FRACTION * largest_step(problem.triangles(), &z, &dz);
+    let cap = (ENERGY_GROWTH * energy).max(energy + 1.0);
+    let mut t = largest.min(1.0);
+    while t > SMALLEST_MOVE {
+        let moved: Vec<_> = z.iter().zip(&dz).map(|(z, d)| z + d * t).collect();
+        if problem.value(&SymmetricDirichlet, &moved) < cap {
+            y.iter_mut().zip(&step).for_each(|(y, s)| *y += t * s);
+            return Some(t);
+        }
+        t *= 0.6;
+    }
+    None
+}

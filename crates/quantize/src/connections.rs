@@ -1,0 +1,159 @@
+//! Short straight lines between grid points.
+
+use super::gauss::Overflow;
+use super::scene::{Connection, Scene, Sight, distinct};
+use num_complex::Complex64;
+use seamstress_mesh::{Halfedge, HalfedgeData};
+use seamstress_parametrize::quarter::turn;
+use std::collections::HashSet;
+
+/// Triangles that the search may cross in all.
+const MOST_CROSSINGS: usize = 20_000_000;
+
+/// A line from a grid point back to itself: two grid units would be two edges between the same two points.
+const LEAST_LOOP: i64 = 3;
+
+/// All straight lines between grid points that are shorter than a radius and pass through no other one, one
+/// for lines that differ by a unit only, shortest first.
+///
+/// From every corner at a grid point, a beam of directions is followed from triangle to triangle, split
+/// where a vertex stands in it, until it leaves the radius. The displacement is exact: what the seams that
+/// were crossed and the wedges at both ends add.
+///
+/// No two edges of the grid may join the same two points, or the quads would be no manifold: of all lines
+/// between two points only the shortest may have length one, and a loop has at least three edges.
+///
+/// # Errors
+/// [`Overflow`].
+pub fn connections(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection>, Overflow> {
+    let mesh = scene.mesh;
+    let z = mesh.halfedges().map(|h| scene.at(h)).collect();
+    let mut search = Search { scene, z, radius, found: Vec::new(), crossings: 0 };
+    for h in mesh.halfedges().filter(|&h| scene.needs.is_point[mesh.origin(h)]) {
+        search.look_from(h);
+    }
+    let Search { mut found, .. } = search;
+    found.sort_by(|a, b| a.length.total_cmp(&b.length));
+    let mut joined = HashSet::new();
+    let line = |sight: &Sight| {
+        let ends = [sight.from, sight.to].map(|h| mesh.origin(h));
+        let least = match ends[0] == ends[1] {
+            true => LEAST_LOOP,
+            false if joined.insert(ends) => 1,
+            false => 2,
+        };
+        Ok(Connection { least, ..scene.line(sight)? })
+    };
+    let lines: Result<Vec<Connection>, Overflow> = found.iter().map(line).collect();
+    Ok(distinct(lines?))
+}
+
+/// Directions still in view when an edge is about to be crossed.
+#[derive(Debug, Clone, Copy)]
+struct Beam {
+    /// The edge, from the right end to the left one, as seen.
+    edge: Halfedge,
+    /// Where the edge's right end lies from the corner.
+    right_end: Complex64,
+    /// Quarter turns from the edge's face to the corner's.
+    turns: i32,
+    /// The rightmost and leftmost directions in view.
+    right: Complex64,
+    left: Complex64,
+    /// Number of edges crossed before.
+    depth: usize,
+}
+
+struct Search<'a> {
+    scene: &'a Scene<'a>,
+    /// Position of each corner.
+    z: HalfedgeData<Complex64>,
+    radius: f64,
+    found: Vec<Sight>,
+    crossings: usize,
+}
+
+impl Search<'_> {
+    fn look_from(&mut self, h: Halfedge) {
+        let origin = self.z[h];
+        let (right, left) = (self.z[h.next()] - origin, self.z[h.prev()] - origin);
+        let mut crossed = Vec::new();
+        self.see(h, h.next(), right, &crossed);
+        if self.scene.mesh.twin(h.prev()).is_none() {
+            // Otherwise the edge on the left is the one on the right of the next corner.
+            self.see(h, h.prev(), left, &crossed);
+        }
+        let mut stack =
+            vec![Beam { edge: h.next(), right_end: right, turns: 0, right, left, depth: 0 }];
+        while let Some(beam) = stack.pop() {
+            let Some(t) = self.scene.mesh.twin(beam.edge) else { continue };
+            self.crossings += 1;
+            if self.crossings > MOST_CROSSINGS {
+                return;
+            }
+            crossed.truncate(beam.depth);
+            crossed.push(beam.edge);
+            self.cross(h, beam, t, &crossed, &mut stack);
+        }
+    }
+
+    /// Enters the triangle behind an edge.
+    fn cross(
+        &mut self,
+        from: Halfedge,
+        beam: Beam,
+        t: Halfedge,
+        crossed: &[Halfedge],
+        stack: &mut Vec<Beam>,
+    ) {
+        let turns = if self.scene.cut.is_seam[beam.edge] {
+            beam.turns - self.scene.matching[beam.edge]
+        } else {
+            beam.turns
+        };
+        let placed =
+            |corner: Halfedge| beam.right_end + turn(self.z[corner] - self.z[t.next()], turns);
+        let (apex, left_end) = (placed(t.prev()), placed(t));
+        let [of_right, of_left] =
+            [beam.right, beam.left].map(|direction| (direction.conj() * apex).im);
+        let depth = beam.depth + 1;
+        // Towards the right side of the triangle, and towards its left.
+        let to_right = Beam { edge: t.next(), turns, depth, ..beam };
+        let to_left = Beam { edge: t.prev(), right_end: apex, turns, depth, ..beam };
+        let right_near = distance(beam.right_end, apex) < self.radius;
+        let left_near = distance(apex, left_end) < self.radius;
+        if of_right > 0.0 && of_left < 0.0 {
+            self.see(from, t.prev(), apex, crossed);
+            // A grid point in the way ends the lines through it.
+            if right_near {
+                stack.push(Beam { left: apex, ..to_right });
+            }
+            if left_near {
+                stack.push(Beam { right: apex, ..to_left });
+            }
+        } else if of_right <= 0.0 {
+            if left_near {
+                stack.push(to_left);
+            }
+        } else if right_near {
+            stack.push(to_right);
+        }
+    }
+
+    /// Notes a grid point at a corner, from the end with the smaller vertex only.
+    fn see(&mut self, from: Halfedge, to: Halfedge, at: Complex64, crossed: &[Halfedge]) {
+        let (a, b) = (self.scene.mesh.origin(from), self.scene.mesh.origin(to));
+        let length = at.norm();
+        if self.scene.needs.is_point[b] && a <= b && length < self.radius {
+            self.found.push(Sight { from, to, length, crossed: crossed.to_vec() });
+        }
+    }
+}
+
+/// Distance of the origin from a segment.
+fn distance(a: Complex64, b: Complex64) -> f64 {
+    let d = b - a;
+    let square = d.norm_sqr();
+    let t = if square > 0.0 { (-(a.conj() * d).re / square).clamp(0.0, 1.0) } else { 0.0 };
+    (a + d * t).norm()
+}

@@ -1,0 +1,1 @@
+//! Seamless parametrizations of triangle meshes, and what people make from them.
