@@ -8,11 +8,13 @@
 
 pub mod consistency;
 pub mod cut;
+pub mod energy;
 pub mod features;
 pub mod field;
 pub mod layout;
 pub mod map;
 pub mod mixed_integer;
+mod ordered;
 mod pipeline;
 pub mod progress;
 pub mod quality;

@@ -7,7 +7,8 @@ use common::{mesh_of, surface, unwatched};
 use seamstress_mesh::features::{EdgeFinder, EdgeSet, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
-use seamstress_parametrize::rounding::{MatchedCut, RoundingOptions, repair, round};
+use seamstress_parametrize::cut::MatchedCut;
+use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
 use seamstress_parametrize::{
     MapError, MapOptions, MapSolution, Objective, RelayoutOptions, ReleaseReason, Sectors,
     make_aligned_map, relayout,

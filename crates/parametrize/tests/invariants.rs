@@ -7,13 +7,13 @@ use common::{real_indices, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
-use seamstress_parametrize::cut::{Cut, DualTree, SeamGraph, connect_cones};
-use seamstress_parametrize::layout::isometric::unfold;
+use seamstress_parametrize::cut::{
+    Cut, DualTree, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices, unfold,
+};
+use seamstress_parametrize::features::index_bounds;
 use seamstress_parametrize::layout::safeguards::retree;
-use seamstress_parametrize::layout::space::{regauge, turned_vertices};
 use seamstress_parametrize::rounding::{
-    CleanUpOptions, ConeCount, MatchedCut, RoundingOptions, clean_up, fix_holonomy, index_bounds,
-    repair, round,
+    CleanUpOptions, ConeCount, RoundingOptions, clean_up, fix_holonomy, repair, round,
 };
 use seamstress_testkit as kit;
 

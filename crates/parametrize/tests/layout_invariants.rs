@@ -8,21 +8,21 @@ use num_complex::Complex64;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
-use seamstress_parametrize::cut::{Cut, DualTree, SeamGraph, connect_cones};
+use seamstress_parametrize::cut::{
+    Cut, DualTree, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices, unfold,
+};
+use seamstress_parametrize::energy::{
+    Energy, Jacobian, SymmetricDirichlet, Triangle, largest_step, triangles,
+};
 use seamstress_parametrize::layout::arap::frames;
-use seamstress_parametrize::layout::energy::{Energy, Jacobian, SymmetricDirichlet};
 use seamstress_parametrize::layout::exact::{ExactLayout, is_positive};
 use seamstress_parametrize::layout::homotopy::{Continuation, angle_sums, barrier, continuation};
-use seamstress_parametrize::layout::isometric::unfold;
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::safeguards::{lay_out, retree};
-use seamstress_parametrize::layout::space::{
-    LinearSpace, regauge, seam_residual, seamless_space, turned_vertices,
-};
-use seamstress_parametrize::layout::triangle::{Triangle, largest_step, triangles};
+use seamstress_parametrize::layout::space::{LinearSpace, seam_residual, seamless_space};
 use seamstress_parametrize::quarter::{rotation, turn};
-use seamstress_parametrize::rounding::{MatchedCut, RoundingOptions, repair, round};
+use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
 use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_testkit as kit;
 use std::f64::consts::FRAC_PI_2;

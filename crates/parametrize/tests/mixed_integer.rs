@@ -7,19 +7,18 @@ use common::{mapped_with, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::MapOptions;
-use seamstress_parametrize::cut::{DualTree, curvature_weight};
+use seamstress_parametrize::cut::{DualTree, MatchedCut, curvature_weight, frames_of_angles};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::layout::conic::{
     Outcome, Program, ProgramKind, SolverOptions, reference,
 };
 use seamstress_parametrize::layout::exact::ExactLayout;
-use seamstress_parametrize::layout::isometric::frames_of_angles;
 use seamstress_parametrize::mixed_integer::{
     MixedIntegerOptions, MixedIntegerStats, round_mixed_integer,
 };
 use seamstress_parametrize::progress::Watch;
 use seamstress_parametrize::quarter::turn;
-use seamstress_parametrize::rounding::{MatchedCut, RoundingStrategy};
+use seamstress_parametrize::rounding::RoundingStrategy;
 use seamstress_testkit as kit;
 use std::ops::ControlFlow;
 use std::time::Duration;

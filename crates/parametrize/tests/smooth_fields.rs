@@ -6,11 +6,10 @@ mod common;
 
 use common::{assert_seamless, mesh_of, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::cut::DualTree;
+use seamstress_parametrize::cut::{DualTree, MatchedCut};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::field::{smooth_field, smooth_frames};
 use seamstress_parametrize::layout::safeguards::Route;
-use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_parametrize::{
     FieldMap, FieldMapOptions, MapOptions, Start, Violation, make_field_map, make_map_from,
 };

@@ -2,12 +2,18 @@
 
 mod chains;
 mod dual_tree;
+mod gauge;
+pub(crate) mod isometric;
+mod matched;
 mod steiner;
 
 pub use chains::{Chain, SeamGraph};
 pub use dual_tree::{DualTree, curvature_weight, flatter_end};
+pub use gauge::{regauge, turned_vertices};
+pub use isometric::{frames_of_angles, rotations, unfold};
+pub use matched::MatchedCut;
+pub(crate) use steiner::DisjointSets;
 pub use steiner::connect_cones;
-pub(crate) use steiner::{DisjointSets, Ordered};
 
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh};
 

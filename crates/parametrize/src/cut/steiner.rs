@@ -1,6 +1,7 @@
 //! Few seams through all cones: a Steiner tree, then a dual tree that respects it.
 
 use super::{Cut, DualTree};
+use crate::ordered::Ordered;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -114,24 +115,6 @@ fn prune(mesh: &TriMesh, is_cone: &VertexData<bool>, is_seam: &mut HalfedgeData<
         if degree[w] == 1 && !keeps(w) {
             ends.push(w);
         }
-    }
-}
-
-/// A float with a total order, for heaps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ordered(pub(crate) f64);
-
-impl Eq for Ordered {}
-
-impl Ord for Ordered {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Feature edges that no map can align, or only at a price nobody wants to pay.
 
 use super::sectors::Sectors;
-use crate::cut::Ordered;
+use crate::ordered::Ordered;
 use seamstress_mesh::features::{EdgeSet, dihedral_angle};
 use seamstress_mesh::{Face, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::f64::consts::FRAC_PI_2;

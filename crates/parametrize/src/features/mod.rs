@@ -1,8 +1,10 @@
 //! Feature edges: what has to run along an axis of the map, and the sectors between them.
 
+mod bounds;
 mod conflicts;
 mod sectors;
 
+pub use bounds::index_bounds;
 pub use conflicts::{ReleaseReason, ReleasedFeature};
 pub(crate) use conflicts::{drop_conflicts, release_near};
 pub(crate) use sectors::LARGEST_INDEX;

@@ -1,6 +1,6 @@
 //! Sectors: the fans of corners between aligned edges, on which indices live.
 
-use crate::rounding::index_bounds;
+use super::bounds::index_bounds;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::borrow::Cow;

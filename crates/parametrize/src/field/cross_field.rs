@@ -1,7 +1,7 @@
 //! A cross field with everything that fixes its topology.
 
 use super::homology::{DualLoop, Homology, NodeIndices};
-use crate::layout::isometric::turning;
+use crate::cut::isometric::turning;
 use num_complex::Complex64;
 use seamstress_mesh::{
     Component, Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData,

@@ -2,9 +2,9 @@
 
 use super::cross_field::rotations;
 use super::face_laplacian::{FaceMatrix, nearest_angles};
-use crate::layout::isometric::headings;
+use crate::cut::MatchedCut;
+use crate::cut::isometric::headings;
 use crate::quarter::{direction, rotation};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh};

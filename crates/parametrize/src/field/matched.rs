@@ -3,11 +3,9 @@
 use super::FieldError;
 use super::cross_field::CrossField;
 use super::frames_of_matchings::spectral_frames;
-use crate::cut::{DualTree, curvature_weight};
+use crate::cut::{DualTree, MatchedCut, curvature_weight, regauge};
 use crate::features::Sectors;
-use crate::layout::space::regauge;
 use crate::quarter::turn;
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{HalfedgeData, Metric, TriMesh};

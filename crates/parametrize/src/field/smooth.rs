@@ -2,8 +2,8 @@
 
 use super::face_laplacian::{FaceMatrix, nearest_angles};
 use super::frames_of_matchings::frames_of;
+use crate::cut::MatchedCut;
 use crate::progress::{Cancelled, Watch};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};

@@ -1,8 +1,8 @@
 //! Moving indices to where they are prescribed.
 
 use super::prescription::{ConePrescription, PrescriptionError};
-use crate::features::Sectors;
-use crate::rounding::{MatchedCut, index_bounds};
+use crate::cut::MatchedCut;
+use crate::features::{Sectors, index_bounds};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::collections::VecDeque;
 

@@ -1,6 +1,6 @@
 //! Stretches wanted of a layout, face by face.
 
-use super::triangle::Triangle;
+use crate::energy::Triangle;
 use seamstress_mesh::{Face, FaceData, TriMesh};
 
 /// A stretch per face that counts as no distortion: frames `A` of section 5 of the seed.

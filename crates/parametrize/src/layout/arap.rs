@@ -1,7 +1,7 @@
 //! As-rigid-as-possible layout by local and global steps, and the Poisson layout for given frames.
 
 use super::problem::LayoutProblem;
-use super::triangle::Triangle;
+use crate::energy::Triangle;
 use crate::quarter::direction;
 use num_complex::Complex64;
 use rayon::prelude::*;

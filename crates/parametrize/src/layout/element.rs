@@ -1,7 +1,7 @@
 //! Triangles in terms of the unknowns of a linear space.
 
 use super::space::LinearSpace;
-use super::triangle::Triangle;
+use crate::energy::Triangle;
 
 /// How the six corner coordinates of a triangle depend on its unknowns.
 pub(super) enum ElementMap {

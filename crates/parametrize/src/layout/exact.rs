@@ -3,19 +3,17 @@
 use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
 use super::conic::program::extremes;
-use super::energy::Energy;
 use super::homotopy::angle_sums;
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
-use super::space::{regauge, seamless_space, turned_vertices};
-use super::triangle::triangles;
-use crate::cut::{Cut, SeamGraph, connect_cones};
+use super::space::seamless_space;
+use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
+use crate::energy::{Energy, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
 use crate::quality::{Distortion, Measure, SingularValues};
 use crate::quarter::{turn, within};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{

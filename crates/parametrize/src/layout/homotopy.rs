@@ -5,17 +5,15 @@
 //! the lifted continuation also turns the target rotations slowly from the isometric ones, watching
 //! that no angle sum slips by a full turn.
 
-use super::energy::SymmetricDirichlet;
-use super::isometric::unfold;
 use super::newton::{NewtonOptions, minimize};
 use super::penalty::SeamPenalty;
 use super::problem::LayoutProblem;
 use super::space::LinearSpace;
-use super::triangle::{Triangle, triangles};
+use crate::cut::{MatchedCut, unfold};
+use crate::energy::{SymmetricDirichlet, Triangle, triangles};
 use crate::features::Sectors;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::{rotation, unit};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Metric, TriMesh, VertexData};

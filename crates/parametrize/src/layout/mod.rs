@@ -5,12 +5,9 @@ pub mod anisotropy;
 pub mod arap;
 pub mod conic;
 pub mod disk;
-pub mod distance;
 mod element;
-pub mod energy;
 pub mod exact;
 pub mod homotopy;
-pub mod isometric;
 pub mod newton;
 pub mod objective;
 pub mod penalty;
@@ -18,5 +15,15 @@ pub mod polish;
 pub mod problem;
 pub mod safeguards;
 pub mod space;
-pub mod triangle;
-pub mod window;
+
+// Old paths of what moved to `cut` and `energy`.
+#[doc(hidden)]
+pub use crate::cut as isometric;
+#[doc(hidden)]
+pub use crate::energy;
+#[doc(hidden)]
+pub use crate::energy as distance;
+#[doc(hidden)]
+pub use crate::energy as triangle;
+#[doc(hidden)]
+pub use crate::energy as window;

@@ -1,8 +1,7 @@
 //! Projected Newton on a flip-free layout.
 
-use super::energy::Energy;
 use super::problem::LayoutProblem;
-use super::triangle::largest_step;
+use crate::energy::{Energy, largest_step};
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 

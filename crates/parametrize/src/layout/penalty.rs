@@ -1,7 +1,7 @@
 //! Soft closing of seams, for the homotopies.
 
+use crate::cut::MatchedCut;
 use crate::features::Sectors;
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::Assembly;
 use seamstress_mesh::{Halfedge, HalfedgeData};

@@ -2,11 +2,10 @@
 
 use super::anisotropy::Anisotropy;
 use super::element::ElementMap;
-use super::energy::{Energy, ProjectedHessian};
 use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
-use super::triangle::{CHUNK, Triangle, at_corner, sum_over, triangles};
 use crate::cut::Cut;
+use crate::energy::{CHUNK, Energy, ProjectedHessian, Triangle, at_corner, sum_over, triangles};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use seamstress_linalg::ordering::{Graph, nested_dissection};

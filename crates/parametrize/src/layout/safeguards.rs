@@ -1,18 +1,16 @@
 //! From rounded matchings to a flip-free exact layout, by the cheapest route that works.
 
-use super::energy::{SymmetricDirichlet, Untangling};
 use super::exact::{Defects, ExactLayout};
 use super::homotopy::{self, Closed, Continuation, HomotopyError};
-use super::isometric::unfold;
 use super::newton::NewtonOptions;
 use super::objective::OptimizeError;
 use crate::consistency::ConsistencyError;
-use crate::cut::{DualTree, flatter_end};
+use crate::cut::{DualTree, MatchedCut, flatter_end, regauge, unfold};
+use crate::energy::{SymmetricDirichlet, Untangling};
 use crate::features::Sectors;
 use crate::field::{PrescriptionError, SmoothError};
 use crate::map::Violations;
 use crate::progress::{Cancelled, Watch};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh};
@@ -387,7 +385,7 @@ pub fn retree(sectors: &Sectors<'_>, metric: &Metric, matched: &MatchedCut) -> M
     let grounding = sectors.aligned().map(|h| (price(h) - metric.length[h], h));
     let tree = DualTree::grounded(slit, grounding, |h| price(h) + curvature(h));
     let full = matched.matching_per_halfedge(sectors);
-    let (regauged, _) = super::space::regauge(slit, &tree, &full);
+    let (regauged, _) = regauge(slit, &tree, &full);
     let mut other = MatchedCut::new(sectors, metric, tree);
     // Regauging moves both by whole and real turns along the tree; bring the difference over exactly.
     let mut turn = FaceData::filled(slit.n_faces(), 0.0);

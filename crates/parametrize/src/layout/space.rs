@@ -1,10 +1,12 @@
 //! The linear space of seamless layouts: wedge positions as exact functions of free unknowns.
 
 use crate::cut::{Cut, SeamGraph};
+#[doc(hidden)]
+pub use crate::cut::{regauge, turned_vertices};
 use crate::quarter::{turn, unit};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
+use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex};
 use std::collections::BTreeMap;
 
 /// `z = N y`: the two coordinates of every wedge as sparse real functions of the unknowns `y`.
@@ -339,45 +341,6 @@ fn pinned_variable(
             chain.left.first().is_some_and(|&h| matching[h].rem_euclid(4) != 0)
         })
     })
-}
-
-/// Whether the matchings around a vertex turn it: it is a cone whose index is no multiple of four.
-pub fn turned_vertices(mesh: &TriMesh, matching: &HalfedgeData<i32>) -> VertexData<bool> {
-    let turns = |v| {
-        let total: i32 = mesh.outgoing(v).map(|h| matching[h]).sum();
-        !mesh.is_boundary(v) && total.rem_euclid(4) != 0
-    };
-    mesh.vertices().map(turns).collect()
-}
-
-/// Moves matchings into the gauge of a cut's dual tree: zero across the tree, and the gauge itself.
-///
-/// `gauge[f]` quarter turns are applied to face `f`. If there is a ground, it is on the right of half-edges
-/// without a twin, and does not turn.
-pub fn regauge(
-    mesh: &TriMesh,
-    tree: &crate::cut::DualTree,
-    matching: &HalfedgeData<i32>,
-) -> (HalfedgeData<i32>, seamstress_mesh::FaceData<i32>) {
-    let mut gauge = seamstress_mesh::FaceData::filled(mesh.n_faces(), 0);
-    for &f in &tree.order {
-        if let Some(h) = tree.ground[f] {
-            gauge[f] = matching[h];
-        }
-        if let Some(h) = tree.parent[f] {
-            gauge[f] = gauge[h.face()] - matching[h];
-        }
-    }
-    let has_ground = tree.ground.iter().any(Option::is_some);
-    let moved = mesh
-        .halfedges()
-        .map(|h| match mesh.twin(h) {
-            Some(t) => matching[h] + gauge[t.face()] - gauge[h.face()],
-            None if has_ground => matching[h] - gauge[h.face()],
-            None => 0,
-        })
-        .collect();
-    (moved, gauge)
 }
 
 /// Residual of the seam conditions: the largest mismatch `|e_right - i^r e_left|`.

@@ -3,9 +3,8 @@
 use super::program::{BatchProgram, MOST_TAU, Placed, rotation};
 use super::search::{Found, Limits, search};
 use super::{BatchStats, MixedIntegerOptions, MixedIntegerStats};
-use crate::layout::isometric::{frames_of_angles, unfold};
+use crate::cut::{MatchedCut, frames_of_angles, unfold};
 use crate::progress::{Cancelled, Watch};
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_mesh::{Metric, TriMesh};
 use std::time::Instant;

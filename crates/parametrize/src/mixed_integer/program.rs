@@ -1,12 +1,12 @@
 //! The bounded-distortion program (9) over layouts in which only the rounded seams close.
 
 use super::search::{Relax, Relaxed, Verdict};
+use crate::cut::MatchedCut;
 use crate::layout::conic::interior_point::{self, Renewal};
 use crate::layout::conic::{Outcome, Program, ProgramKind, Solver, SolverOptions, solve};
 use crate::layout::exact::ExactLayout;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::turn;
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh};

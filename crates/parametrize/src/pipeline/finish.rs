@@ -1,7 +1,7 @@
 //! From a flip-free layout to one of low distortion.
 
+use crate::energy::{Energy, PowerOfDirichlet, SymmetricDirichlet};
 use crate::features::Sectors;
-use crate::layout::energy::{Energy, PowerOfDirichlet, SymmetricDirichlet};
 use crate::layout::newton::NewtonOptions;
 use crate::layout::polish::{PolishOptions, polish};
 use crate::layout::safeguards::Laid;

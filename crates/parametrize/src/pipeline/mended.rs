@@ -2,8 +2,8 @@
 
 use super::start::Begun;
 use crate::consistency::{ConsistencyOptions, consistent_cut};
+use crate::cut::frames_of_angles;
 use crate::features::Sectors;
-use crate::layout::isometric::frames_of_angles;
 use crate::layout::safeguards::{Laid, LayoutError, lay_out};
 use crate::progress::Watch;
 use seamstress_mesh::Metric;
@@ -49,8 +49,7 @@ pub(super) fn lay_out_or_mend(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cut::{DualTree, curvature_weight};
-    use crate::rounding::MatchedCut;
+    use crate::cut::{DualTree, MatchedCut, curvature_weight};
     use seamstress_mesh::TriMesh;
     use seamstress_testkit as testkit;
     use std::ops::ControlFlow;

@@ -4,20 +4,19 @@ use super::{MapError, MapOptions};
 use crate::consistency::{
     AngleNorm, ConsistencyOptions, consistent_cut, lifted_angles, matched_by_angles,
 };
-use crate::cut::{DualTree, curvature_weight};
+use crate::cut::{DualTree, MatchedCut, curvature_weight, frames_of_angles};
 use crate::features::Sectors;
 use crate::field::{
     ConePrescription, CrossField, FieldError, check_angle, impose, matched_cut, smooth_field,
     smooth_frames,
 };
 use crate::layout::exact::Defects;
-use crate::layout::isometric::frames_of_angles;
 use crate::layout::safeguards::LayoutError;
 use crate::map::{Violation, Violations};
 use crate::mixed_integer::{MixedIntegerStats, round_mixed_integer};
 use crate::progress::Watch;
 use crate::quarter::turn;
-use crate::rounding::{MatchedCut, RoundingStrategy, fix_holonomy, repair, round};
+use crate::rounding::{RoundingStrategy, fix_holonomy, repair, round};
 use num_complex::Complex64;
 use seamstress_mesh::{Component, Metric, TriMesh};
 

@@ -1,6 +1,6 @@
 //! Frames of a map: the rotations nearest to its Jacobians.
 
-use crate::layout::energy::Jacobian;
+use crate::energy::Jacobian;
 use crate::quarter::{direction, turn};
 use num_complex::Complex64;
 use seamstress_mesh::{Face, FaceData, Metric, TriMesh};

@@ -2,8 +2,7 @@
 
 use super::scale;
 use super::singular::SingularValues;
-use crate::layout::distance::Arap;
-use crate::layout::energy::{Energy, SymmetricDirichlet};
+use crate::energy::{Arap, Energy, SymmetricDirichlet};
 
 /// A measure of distortion: a function of the signed singular values of each triangle, a rule for the global
 /// scale at which they are taken, and the mean or the maximum as the figure of the whole map.

@@ -1,7 +1,7 @@
 //! Signed singular values of a map, triangle by triangle.
 
 use super::frames::jacobian;
-use crate::layout::triangle::Triangle;
+use crate::energy::Triangle;
 use num_complex::Complex64;
 use seamstress_mesh::{Face, FaceData, Metric, TriMesh};
 

@@ -1,9 +1,9 @@
 //! Fewer and better placed cones, judged by the surrogate.
 
-use super::matched::MatchedCut;
 use super::surrogate::{Response, Surrogate};
-use crate::cut::Ordered;
+use crate::cut::MatchedCut;
 use crate::features::{Road, Sectors};
+use crate::ordered::Ordered;
 use crate::progress::{Cancelled, Watch};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{FaceData, HalfedgeData, Metric, Vertex, VertexData};

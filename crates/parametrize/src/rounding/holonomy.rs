@@ -1,6 +1,6 @@
 //! Choosing the rotations around handles and between boundaries for fixed cones.
 
-use super::matched::MatchedCut;
+use crate::cut::MatchedCut;
 use crate::features::Sectors;
 use rayon::prelude::*;
 use seamstress_linalg::ordering::{Graph, nested_dissection};

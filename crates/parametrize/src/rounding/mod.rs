@@ -2,7 +2,7 @@
 
 mod clean_up;
 mod holonomy;
-mod matched;
+mod options;
 mod patch;
 mod progressive;
 mod relaxation;
@@ -11,9 +11,10 @@ mod surrogate;
 mod system;
 mod weights;
 
+pub use crate::cut::MatchedCut;
 pub use clean_up::{CleanUpError, CleanUpOptions, CleanUpStats, ConeCount, clean_up};
 pub use holonomy::fix_holonomy;
-pub use matched::MatchedCut;
-pub use progressive::{RoundingOptions, RoundingStats, RoundingStrategy, round};
-pub use repair::{index_bounds, repair};
+pub use options::{RoundingOptions, RoundingStrategy};
+pub use progressive::{RoundingStats, round};
+pub use repair::repair;
 pub use surrogate::Surrogate;

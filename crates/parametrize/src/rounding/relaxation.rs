@@ -1,8 +1,7 @@
 //! The layout between roundings: as rigid as possible, rounded edges held, the others free.
 
-use super::matched::MatchedCut;
 use super::system::System;
-use crate::cut::Cut;
+use crate::cut::{Cut, MatchedCut};
 use crate::features::Sectors;
 use crate::quarter::{direction, unit};
 use num_complex::Complex64;

@@ -1,17 +1,9 @@
 //! Making the indices of all sectors possible for triangles.
 
-use super::matched::MatchedCut;
+use crate::cut::MatchedCut;
 use crate::features::Sectors;
 use seamstress_mesh::{Metric, Vertex, VertexData};
 use std::collections::VecDeque;
-
-/// Smallest and largest index, in quarters, that an interior vertex of this valence should get: its
-/// angle `(4 - k) pi / 2` is a quarter turn at least and less than 130 degrees per corner (a vertex of
-/// valence 3 with k = -2 is impossible, and with -1 already costs dearly).
-pub fn index_bounds(valence: usize) -> (i32, i32) {
-    let most_quarters = (1.44 * valence as f64).ceil() as i32 - 1;
-    (4 - most_quarters.max(1), 3)
-}
 
 /// Shifts matchings until every index is within its bounds; returns how many shifts it took, and the
 /// sectors that stay out of bounds.

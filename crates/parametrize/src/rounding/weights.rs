@@ -1,6 +1,6 @@
 //! What a change of its index costs a sector.
 
-use super::progressive::RoundingOptions;
+use super::options::RoundingOptions;
 use crate::features::Sectors;
 use seamstress_mesh::{Vertex, VertexData};
 

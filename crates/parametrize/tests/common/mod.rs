@@ -13,8 +13,8 @@ use checker::Found;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::Sectors;
+use seamstress_parametrize::cut::MatchedCut;
 use seamstress_parametrize::progress::Watch;
-use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_parametrize::{MapOptions, MapSolution, make_map};
 use std::ops::ControlFlow;
 

@@ -1,6 +1,6 @@
 //! The symmetric Dirichlet energy with all singular values kept in a window.
 
-use super::energy::{Energy, Jet, SymmetricDirichlet};
+use super::{Energy, Jet, SymmetricDirichlet};
 
 /// `E - weight (log(1 - s1 / highest) + log(1 - lowest / s2))` with E the symmetric Dirichlet energy: infinite
 /// outside `lowest < s2 <= s1 < highest`.

@@ -1,6 +1,6 @@
 //! Triangles as layouts see them.
 
-use super::energy::Jacobian;
+use super::Jacobian;
 use crate::cut::Cut;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use seamstress_mesh::{Metric, TriMesh};
 
 /// Faces per parallel task; sums are taken per task, then in order, so that the number of threads does
 /// not show in the result.
-pub(super) const CHUNK: usize = 2048;
+pub(crate) const CHUNK: usize = 2048;
 
 /// A triangle as layouts see it.
 #[derive(Debug, Clone, Copy)]
@@ -108,7 +108,7 @@ pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -
 }
 
 /// Smallest positive root of `a t^2 + b t + c`.
-pub(super) fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
+pub(crate) fn smallest_positive_root(a: f64, b: f64, c: f64) -> f64 {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return f64::INFINITY;

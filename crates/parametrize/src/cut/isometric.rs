@@ -1,6 +1,6 @@
 //! The isometric layout: triangles unfolded one by one along a dual tree.
 
-use crate::cut::{Cut, DualTree};
+use super::{Cut, DualTree};
 use crate::quarter::rotation;
 use num_complex::Complex64;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh};

@@ -1,162 +1,8 @@
-//! Energies of the two signed singular values of a triangle's Jacobian.
+//! Hessians of energies, made positive semi-definite.
 
+use super::{Energy, Jacobian};
 use crate::quarter::direction;
 use num_complex::Complex64;
-
-/// Value, gradient and Hessian of an energy at `(sigma_1, sigma_2)`.
-#[derive(Debug, Clone, Copy)]
-pub struct Jet {
-    /// Value.
-    pub value: f64,
-    /// First derivatives.
-    pub d: [f64; 2],
-    /// Second derivatives: 11, 12, 22.
-    pub dd: [f64; 3],
-}
-
-/// An energy per triangle; most grow without bound as the triangle collapses.
-pub trait Energy: Sync {
-    /// Value at singular values, with `s2 > 0` unless flips are allowed.
-    fn value(&self, s1: f64, s2: f64) -> f64;
-    /// Value and derivatives.
-    fn jet(&self, s1: f64, s2: f64) -> Jet;
-    /// Whether flipped triangles have a finite energy too.
-    fn allows_flips(&self) -> bool {
-        false
-    }
-}
-
-/// Symmetric Dirichlet energy `s1^2 + s2^2 + 1/s1^2 + 1/s2^2`, 4 at an isometry.
-///
-/// The seed's (5) lost the squares of the inverses in print: as printed it is not smallest at 1.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct SymmetricDirichlet;
-
-impl Energy for SymmetricDirichlet {
-    #[inline]
-    fn value(&self, s1: f64, s2: f64) -> f64 {
-        let (a, b) = (s1 * s1, s2 * s2);
-        a + b + 1.0 / a + 1.0 / b
-    }
-
-    #[inline]
-    fn jet(&self, s1: f64, s2: f64) -> Jet {
-        let (a, b) = (s1 * s1, s2 * s2);
-        Jet {
-            value: a + b + 1.0 / a + 1.0 / b,
-            d: [2.0 * (s1 - 1.0 / (a * s1)), 2.0 * (s2 - 1.0 / (b * s2))],
-            dd: [2.0 + 6.0 / (a * a), 0.0, 2.0 + 6.0 / (b * b)],
-        }
-    }
-}
-
-/// `(E / bound)^p / p` with E the symmetric Dirichlet energy: for growing p it looks at the worst
-/// triangles only.
-#[derive(Debug, Clone, Copy)]
-pub struct PowerOfDirichlet {
-    /// The exponent.
-    pub p: i32,
-    /// The largest energy of a triangle when the optimisation starts.
-    pub bound: f64,
-}
-
-impl Energy for PowerOfDirichlet {
-    #[inline]
-    fn value(&self, s1: f64, s2: f64) -> f64 {
-        (SymmetricDirichlet.value(s1, s2) / self.bound).powi(self.p) / f64::from(self.p)
-    }
-
-    #[inline]
-    fn jet(&self, s1: f64, s2: f64) -> Jet {
-        let inner = SymmetricDirichlet.jet(s1, s2);
-        let p = f64::from(self.p);
-        let q = inner.value / self.bound;
-        let second = q.powi(self.p - 2);
-        let (g1, g2) = (q * second / self.bound, (p - 1.0) * second / (self.bound * self.bound));
-        let [d1, d2] = inner.d;
-        Jet {
-            value: q * q * second / p,
-            d: [g1 * d1, g1 * d2],
-            dd: [g1 * inner.dd[0] + g2 * d1 * d1, g2 * d1 * d2, g1 * inner.dd[2] + g2 * d2 * d2],
-        }
-    }
-}
-
-/// `(s1^2 + s2^2 + 1 + (s1 s2)^2) / chi(s1 s2)` with `chi(D) = (D + sqrt(eps^2 + D^2)) / 2`: finite for
-/// flipped triangles, and a barrier against them as eps goes to zero (Garanzha et al. 2021).
-#[derive(Debug, Clone, Copy)]
-pub struct Untangling {
-    /// Width of the regularisation, in units of the determinant.
-    pub eps: f64,
-}
-
-impl Untangling {
-    /// `chi` and its first two derivatives.
-    #[inline]
-    pub fn chi(&self, d: f64) -> [f64; 3] {
-        let q = self.eps.hypot(d);
-        let value = if d >= 0.0 { 0.5 * (d + q) } else { 0.5 * self.eps * self.eps / (q - d) };
-        [value, value / q, 0.5 * self.eps * self.eps / (q * q * q)]
-    }
-}
-
-impl Energy for Untangling {
-    fn value(&self, s1: f64, s2: f64) -> f64 {
-        let d = s1 * s2;
-        (s1 * s1 + s2 * s2 + 1.0 + d * d) / self.chi(d)[0]
-    }
-
-    fn jet(&self, s1: f64, s2: f64) -> Jet {
-        let d = s1 * s2;
-        let [chi, c1, c2] = self.chi(d);
-        let value = (s1 * s1 + s2 * s2 + 1.0 + d * d) / chi;
-        let (n1, n2) = (2.0 * s1 + 2.0 * d * s2, 2.0 * s2 + 2.0 * d * s1);
-        let (n11, n12, n22) = (2.0 + 2.0 * s2 * s2, 4.0 * d, 2.0 + 2.0 * s1 * s1);
-        let (x1, x2) = (c1 * s2, c1 * s1);
-        let (x11, x12, x22) = (c2 * s2 * s2, c2 * d + c1, c2 * s1 * s1);
-        let (f1, f2) = ((n1 - value * x1) / chi, (n2 - value * x2) / chi);
-        Jet {
-            value,
-            d: [f1, f2],
-            dd: [
-                (n11 - 2.0 * f1 * x1 - value * x11) / chi,
-                (n12 - f1 * x2 - f2 * x1 - value * x12) / chi,
-                (n22 - 2.0 * f2 * x2 - value * x22) / chi,
-            ],
-        }
-    }
-
-    fn allows_flips(&self) -> bool {
-        true
-    }
-}
-
-/// A Jacobian split in similarity and anti-similarity, `J v = similar v + anti conj(v)`.
-#[derive(Debug, Clone, Copy)]
-pub struct Jacobian {
-    /// Similarity part.
-    pub similar: Complex64,
-    /// Anti-similarity part.
-    pub anti: Complex64,
-}
-
-impl Jacobian {
-    /// From the rows of the 2 x 2 matrix.
-    #[inline]
-    pub fn from_rows(j: [[f64; 2]; 2]) -> Self {
-        Self {
-            similar: Complex64::new(j[0][0] + j[1][1], j[1][0] - j[0][1]) / 2.0,
-            anti: Complex64::new(j[0][0] - j[1][1], j[1][0] + j[0][1]) / 2.0,
-        }
-    }
-
-    /// Signed singular values, the larger first; the second is negative for a flipped triangle.
-    #[inline]
-    pub fn singular_values(&self) -> (f64, f64) {
-        let (a, b) = (self.similar.norm_sqr().sqrt(), self.anti.norm_sqr().sqrt());
-        (a + b, a - b)
-    }
-}
 
 /// Gradient and projected (positive semi-definite) Hessian with respect to the Jacobian's entries
 /// `(j00, j01, j10, j11)`, by the closed-form eigensystem of energies of the singular values.
@@ -224,18 +70,10 @@ fn half_angle(z: Complex64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::distance::{Arap, Asap, Guarded};
+    use crate::energy::{Arap, Asap, Guarded, PowerOfDirichlet, SymmetricDirichlet, Untangling};
 
     fn at(j: [f64; 4]) -> Jacobian {
         Jacobian::from_rows([[j[0], j[1]], [j[2], j[3]]])
-    }
-
-    #[test]
-    fn singular_values_of_known_maps() {
-        let (s1, s2) = at([3.0, 0.0, 0.0, 0.5]).singular_values();
-        assert!((s1 - 3.0).abs() < 1e-15 && (s2 - 0.5).abs() < 1e-15);
-        let (s1, s2) = at([0.0, 1.0, 1.0, 0.0]).singular_values();
-        assert_eq!((s1, s2), (1.0, -1.0));
     }
 
     /// Gradient and Hessian in the entries of J by central differences.

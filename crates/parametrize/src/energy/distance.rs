@@ -3,7 +3,7 @@
 //! They stay finite as a triangle collapses, so Newton steps run into the edge of the flip-free region and
 //! stall there; a logarithmic barrier that fades out leads along it.
 
-use super::energy::{Energy, Jet};
+use super::{Energy, Jet};
 
 /// As-rigid-as-possible energy `(s1 - 1)^2 + (s2 - 1)^2`, eq. (4): the squared distance to the nearest rotation.
 #[derive(Debug, Clone, Copy, Default)]

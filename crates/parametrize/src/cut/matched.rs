@@ -1,9 +1,7 @@
 //! A cut with a matching on every seam.
 
-use crate::cut::{Cut, DualTree, flatter_end};
+use super::{Cut, DualTree, flatter_end, isometric, regauge};
 use crate::features::Sectors;
-use crate::layout::isometric;
-use crate::layout::space::regauge;
 use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
