@@ -1,0 +1,116 @@
+//! What is compared.
+
+use crate::program::Report;
+
+/// A number of a report.
+pub(super) struct Metric {
+    pub(super) title: &'static str,
+    decimals: usize,
+    pub(super) value: fn(&Report) -> Option<f64>,
+    /// How worse is measured; none if more is neither better nor worse.
+    pub(super) scale: Option<Scale>,
+}
+
+/// Makes a number a positive one whose growth in percent says how much worse it became.
+pub(super) struct Scale {
+    /// The best value there is.
+    ideal: f64,
+    /// What is added to the distance from the ideal, so that near it small changes are not large percentages.
+    floor: f64,
+}
+
+impl Scale {
+    /// How much worse the new value is: 1 if it is the same.
+    pub(super) fn ratio(&self, old: f64, new: f64) -> f64 {
+        if old == new {
+            return 1.0;
+        }
+        (new - self.ideal + self.floor) / (old - self.ideal + self.floor)
+    }
+}
+
+impl Metric {
+    pub(super) fn show(&self, value: Option<f64>) -> String {
+        value.map_or("-".into(), |x| format!("{x:.*}", self.decimals))
+    }
+}
+
+/// The distance from 4, which is an isometry, that counts as no more than another so small.
+const ENERGY_FLOOR: f64 = 0.01;
+/// Seconds; reports count in hundredths.
+const TIME_FLOOR: f64 = 0.1;
+
+const TAU: Metric = Metric {
+    title: "tau",
+    decimals: 3,
+    value: |report| report.number("/distortion/tau"),
+    scale: Some(Scale { ideal: 0.0, floor: 0.0 }),
+};
+const ENERGY: Metric = Metric {
+    title: "SD",
+    decimals: 4,
+    value: |report| report.number("/distortion/symmetric_dirichlet"),
+    scale: Some(Scale { ideal: 4.0, floor: ENERGY_FLOOR }),
+};
+const SECONDS: Metric = Metric {
+    title: "CPU s",
+    decimals: 2,
+    value: Report::cpu_seconds,
+    scale: Some(Scale { ideal: 0.0, floor: TIME_FLOOR }),
+};
+const CONES: Metric = Metric {
+    title: "cones",
+    decimals: 0,
+    value: |report| report.number("/cones/count"),
+    scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
+};
+const QUADS: Metric = Metric {
+    title: "quads",
+    decimals: 0,
+    value: |report| report.number("/quads/count"),
+    scale: None,
+};
+const IRREGULAR: Metric = Metric {
+    title: "irregular",
+    decimals: 0,
+    value: |report| report.number("/quads/irregular/count"),
+    scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
+};
+/// Quads that are inverted, folded or self-intersecting.
+const BAD_QUADS: Metric = Metric {
+    title: "bad quads",
+    decimals: 0,
+    value: |report| {
+        let counts = ["inverted", "crossed", "bent"];
+        counts.iter().map(|kind| report.number(&format!("/orientation/{kind}"))).sum()
+    },
+    scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
+};
+
+/// The metrics of `map`.
+pub(super) const MAP_METRICS: &[Metric] = &[TAU, ENERGY, CONES, SECONDS];
+/// The metrics of `quad`: tau and energy are those of the integer-grid map.
+pub(super) const QUAD_METRICS: &[Metric] = &[QUADS, IRREGULAR, BAD_QUADS, TAU, ENERGY, SECONDS];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn worse_is_measured_from_the_ideal() {
+        let ratio = |metric: &Metric, old, new| metric.scale.as_ref().unwrap().ratio(old, new);
+        assert!((ratio(&ENERGY, 4.04, 4.09) - 2.0).abs() < 1e-9);
+        assert!(ratio(&ENERGY, 4.000_001, 4.000_01) < 1.01);
+        assert_eq!(ratio(&TAU, 2.0, 3.0), 1.5);
+        assert_eq!(ratio(&TAU, f64::INFINITY, f64::INFINITY), 1.0);
+        assert!(ratio(&BAD_QUADS, 0.0, 1.0) > 1.5);
+    }
+
+    #[test]
+    fn bad_quads_are_added_up() {
+        let report = |json: &str| Report::parse(json.as_bytes()).unwrap();
+        let some = report(r#"{"orientation": {"inverted": 1, "crossed": 0, "bent": 2}}"#);
+        assert_eq!((BAD_QUADS.value)(&some), Some(3.0));
+        assert_eq!((BAD_QUADS.value)(&report("{}")), None);
+    }
+}
