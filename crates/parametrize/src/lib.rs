@@ -28,7 +28,7 @@ pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
 #[doc(hidden)]
-pub use pipeline::in_component;
+pub use pipeline::{followed, in_component};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, Relayout,
     RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap, lay_out_disk,

@@ -13,7 +13,8 @@ pub enum Severity {
 
 /// One thing wrong with a soup of triangles or polygons. Indices count from 0; an edge is named by
 /// its two vertices, the smaller first.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Fault {
     /// There is nothing to work on.

@@ -26,7 +26,7 @@ use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
-pub use parts::in_component;
+pub use parts::{followed, in_component};
 use parts::{Outcome, Whole};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Face, Metric, TriMesh, Vertex, components};

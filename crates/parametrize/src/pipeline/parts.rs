@@ -69,7 +69,7 @@ impl Outcome {
 ///
 /// # Errors
 /// Sectors of the former whose angle is no positive number of quarter turns.
-pub(super) fn followed(
+pub fn followed(
     mesh: &TriMesh,
     map: &SeamlessMap,
     features: EdgeSet,

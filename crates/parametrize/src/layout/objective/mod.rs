@@ -16,7 +16,7 @@ use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 
 /// What a layout minimises, and by which method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Objective {

@@ -1,0 +1,221 @@
+//! Certifying and measuring maps, whatever program made them.
+
+use crate::error::{Error, Stage};
+use crate::features::{FeatureReport, Features};
+use crate::finding::Finding;
+use crate::options::not_negative;
+use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
+use crate::surface::Surface;
+use seamstress_parametrize::map::Certificate;
+use seamstress_parametrize::quality::{SingularValues, distortion, measure_all};
+use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use serde::{Deserialize, Serialize};
+
+/// Options of [`Surface::certify_with`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct CertifyOptions {
+    /// Features that the map has to have on its axes
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub features: Features,
+
+    /// How far the sides of a seam may be apart, in edge lengths; for maps written with few digits
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
+        default_value_t = Self::default().tolerance))]
+    pub tolerance: f64,
+
+    /// How far the image of a feature may be off an axis, degrees
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
+        default_value_t = Self::default().alignment_tolerance))]
+    pub alignment_tolerance: f64,
+}
+
+impl Default for CertifyOptions {
+    fn default() -> Self {
+        Self {
+            features: Features::none(),
+            tolerance: Tolerance::default().seam,
+            alignment_tolerance: AlignmentTolerance::default().axis,
+        }
+    }
+}
+
+impl CertifyOptions {
+    /// Sets the features that have to be aligned.
+    pub fn features(mut self, features: Features) -> Self {
+        self.features = features;
+        self
+    }
+
+    /// Sets how far the sides of a seam may be apart, in edge lengths.
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    pub(crate) fn seam_tolerance(&self) -> Tolerance {
+        Tolerance { seam: self.tolerance, ..Tolerance::default() }
+    }
+
+    fn axis_tolerance(&self) -> AlignmentTolerance {
+        AlignmentTolerance { axis: self.alignment_tolerance, ..AlignmentTolerance::default() }
+    }
+}
+
+/// What was found of a map from anywhere.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Verdict {
+    /// Whether it is a seamless map, without a flip.
+    pub certified: bool,
+    /// Why not.
+    pub violations: Vec<Finding>,
+    /// What was checked, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// Its distortion.
+    pub distortion: Distortion,
+    /// Its cones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cones: Option<ConeReport>,
+    /// Its seams.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seams: Option<SeamReport>,
+    /// Whether the features asked for lie on its axes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub aligned: Option<bool>,
+    /// What was checked of them, if they do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alignment: Option<Alignment>,
+    /// Why not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alignment_violations: Vec<Finding>,
+    /// The features asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub features: Option<FeatureReport>,
+}
+
+impl Verdict {
+    /// Whether all that was asked for is certified.
+    pub fn is_passed(&self) -> bool {
+        self.certified && self.aligned != Some(false)
+    }
+}
+
+/// Every measure of distortion over a map, and whether it is seamless.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Measurements {
+    /// Triangles flipped or collapsed.
+    pub flipped: usize,
+    /// Triangles without area on the surface.
+    pub degenerate: usize,
+    /// Whether it is a seamless map.
+    pub certified: bool,
+    /// Why not.
+    pub fault: Option<String>,
+    /// The measures.
+    pub measures: Vec<Measurement>,
+}
+
+impl Surface {
+    /// Certifies a map of this surface, by UVs and the three of each face: no triangle is flipped or collapsed, every
+    /// seam fits, every cone angle is a multiple of a quarter turn.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotAMap`](crate::ErrorKind::NotAMap) with every violation.
+    pub fn certify(&self, uvs: &[[f64; 2]], face_uvs: &[[u32; 3]]) -> Result<Certificate, Error> {
+        let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
+        let certified = self.seamless_map(corner_uvs, &CertifyOptions::default())?;
+        Ok(certified.certificate().clone())
+    }
+
+    /// Certifies a map as [`Surface::certify`] does, and the alignment of features; finds out all there is.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotAMap`](crate::ErrorKind::NotAMap) if the UVs are not of this surface's faces, and those of [`Surface::features`].
+    pub fn certify_with(
+        &self,
+        uvs: &[[f64; 2]],
+        face_uvs: &[[u32; 3]],
+        options: &CertifyOptions,
+    ) -> Result<Verdict, Error> {
+        not_negative("tolerance", options.tolerance)?;
+        not_negative("alignment_tolerance", options.alignment_tolerance)?;
+        let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
+        let features = match options.features.is_none() {
+            true => None,
+            false => Some(self.features(&options.features)?),
+        };
+        let distortion = Distortion::from(&distortion(self.mesh(), self.metric(), &corner_uvs));
+        let mut verdict = Verdict {
+            certified: false,
+            violations: Vec::new(),
+            certificate: None,
+            distortion,
+            cones: None,
+            seams: None,
+            aligned: None,
+            alignment: None,
+            alignment_violations: Vec::new(),
+            features: features.as_ref().map(|features| features.report().clone()),
+        };
+        let map = match SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance()) {
+            Ok(map) => map,
+            Err(violations) => {
+                verdict.violations = self.findings(&violations);
+                return Ok(verdict);
+            }
+        };
+        verdict.certified = true;
+        verdict.certificate = Some(map.certificate().clone());
+        verdict.cones = Some(ConeReport::new(map.cones()));
+        verdict.seams = Some(SeamReport::new(map.seams()));
+        if let Some(features) = features {
+            let tolerance = options.axis_tolerance();
+            match Alignment::certify(self.mesh(), &map, features.edges(), &tolerance) {
+                Ok(alignment) => verdict.alignment = Some(alignment),
+                Err(violations) => verdict.alignment_violations = self.findings(&violations),
+            }
+            verdict.aligned = Some(verdict.alignment.is_some());
+        }
+        Ok(verdict)
+    }
+
+    /// Measures the distortion of any map of this surface; it may have flips and open seams.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotAMap`](crate::ErrorKind::NotAMap) if the UVs are not of this surface's faces.
+    pub fn measure(
+        &self,
+        uvs: &[[f64; 2]],
+        face_uvs: &[[u32; 3]],
+        options: &CertifyOptions,
+    ) -> Result<Measurements, Error> {
+        not_negative("tolerance", options.tolerance)?;
+        let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
+        let singular = SingularValues::new(self.mesh(), self.metric(), &corner_uvs);
+        let fault = SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance())
+            .err()
+            .map(|violations: Violations| violations.to_string());
+        Ok(Measurements {
+            flipped: singular.flipped(),
+            degenerate: singular.degenerate(),
+            certified: fault.is_none(),
+            fault,
+            measures: measure_all(&singular).into_iter().map(Measurement::from).collect(),
+        })
+    }
+
+    /// A certified map of corner UVs.
+    pub(crate) fn seamless_map(
+        &self,
+        corner_uvs: Vec<[f64; 2]>,
+        options: &CertifyOptions,
+    ) -> Result<SeamlessMap, Error> {
+        SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance())
+            .map_err(|violations| self.not_a_map(&violations).at_stage(Some(Stage::Certificate)))
+    }
+}

@@ -1,0 +1,533 @@
+//! Features as asked for, as found on a surface, and what became of them in a map.
+
+use crate::error::{Error, ErrorKind, Stage};
+use crate::finding::Elements;
+use crate::surface::Surface;
+use seamstress_mesh::features::{
+    EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
+};
+use seamstress_mesh::{Halfedge, TriMesh, Vertex};
+use seamstress_parametrize::{
+    Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Faulty names of a source that its error lists.
+const LISTED: usize = 5;
+
+/// Where feature edges come from.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum FeatureSource {
+    /// Edges at which the surface bends by this many degrees or more: `angle:40`.
+    Angle(f64),
+    /// The boundary: `boundary`.
+    Boundary,
+    /// The `l` elements of the OBJ file of the surface: `lines`.
+    Lines,
+    /// Edges by their ends, vertices of the input counted from 0: `edges:0-1,1-5`.
+    Edges(Vec<[u32; 2]>),
+    /// A file of two vertices a line: `pairs:FILE`.
+    Pairs(PathBuf),
+    /// A `.sharp` file of QuadWild: `sharp:FILE`.
+    Sharp(PathBuf),
+}
+
+impl FromStr for FeatureSource {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+        match (kind, rest) {
+            ("lines", "") => Ok(Self::Lines),
+            ("boundary", "") => Ok(Self::Boundary),
+            ("angle", degrees) => match degrees.parse::<f64>() {
+                Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(Self::Angle(degrees)),
+                _ => Err("expected degrees, more than 0 and at most 180, after `angle:`".into()),
+            },
+            ("edges", edges) => {
+                edges.split(',').map(edge).collect::<Result<_, _>>().map(Self::Edges)
+            }
+            ("pairs", file) if !file.is_empty() => Ok(Self::Pairs(file.into())),
+            ("sharp", file) if !file.is_empty() => Ok(Self::Sharp(file.into())),
+            _ => {
+                Err("expected angle:DEGREES, boundary, lines, edges:A-B, pairs:FILE or sharp:FILE"
+                    .into())
+            }
+        }
+    }
+}
+
+fn edge(text: &str) -> Result<[u32; 2], String> {
+    let ends = text.split_once('-');
+    let parsed = ends.and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+    parsed.ok_or_else(|| "expected edges such as 0-1,1-5 after `edges:`".into())
+}
+
+impl fmt::Display for FeatureSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Angle(degrees) => write!(f, "angle:{degrees}"),
+            Self::Boundary => f.write_str("boundary"),
+            Self::Lines => f.write_str("lines"),
+            Self::Edges(edges) => {
+                let edges: Vec<String> = edges.iter().map(|[a, b]| format!("{a}-{b}")).collect();
+                write!(f, "edges:{}", edges.join(","))
+            }
+            Self::Pairs(file) => write!(f, "pairs:{}", file.display()),
+            Self::Sharp(file) => write!(f, "sharp:{}", file.display()),
+        }
+    }
+}
+
+impl Serialize for FeatureSource {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for FeatureSource {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+/// Edges that a map, and quads, should follow: those of all sources.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Features {
+    sources: Vec<FeatureSource>,
+}
+
+impl Features {
+    /// No features.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// Edges at which the surface bends by this many degrees or more.
+    pub fn angle(degrees: f64) -> Self {
+        Self::none().and(FeatureSource::Angle(degrees))
+    }
+
+    /// Edges by their ends, vertices of the input counted from 0.
+    pub fn edges(edges: impl Into<Vec<[u32; 2]>>) -> Self {
+        Self::none().and(FeatureSource::Edges(edges.into()))
+    }
+
+    /// The boundary as well.
+    pub fn with_boundary(self) -> Self {
+        self.and(FeatureSource::Boundary)
+    }
+
+    /// Those of another source as well.
+    pub fn and(mut self, source: FeatureSource) -> Self {
+        if !self.sources.contains(&source) {
+            self.sources.push(source);
+        }
+        self
+    }
+
+    /// The sources.
+    pub fn sources(&self) -> &[FeatureSource] {
+        &self.sources
+    }
+
+    /// Whether none is asked for.
+    pub fn is_none(&self) -> bool {
+        self.sources.is_empty()
+    }
+}
+
+/// The feature edges of a surface and the curves that they form.
+#[derive(Debug, Clone)]
+pub struct FeatureCurves {
+    pub(crate) edges: EdgeSet,
+    pairs: Vec<[u32; 2]>,
+    corners: Vec<u32>,
+    open_ends: Vec<u32>,
+    report: FeatureReport,
+}
+
+/// Features in numbers, with vertices of the surface.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FeatureReport {
+    /// The sources, with the edges that each named.
+    pub sources: Vec<FeatureSourceReport>,
+    /// Whether the boundary is among them.
+    pub align_boundary: bool,
+    /// Edges in all.
+    pub edges: usize,
+    /// Those of them on the boundary.
+    pub boundary_edges: usize,
+    /// Their length, mesh units.
+    pub length: f64,
+    /// Curves that close.
+    pub loops: usize,
+    /// Vertices at which a curve turns.
+    pub turns: usize,
+    /// Vertices at which three or more curves meet.
+    pub junctions: usize,
+    /// Vertices at which a curve ends inside the surface.
+    pub open_ends: usize,
+    /// Vertices at which a curve ends on the boundary.
+    pub boundary_ends: usize,
+    /// All of these vertices.
+    pub nodes: Vec<FeatureNode>,
+    /// The curves between them.
+    pub curves: Vec<FeatureCurve>,
+    /// Edges that are aligned, in a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kept: Option<usize>,
+    /// Edges that are not, each with the reason.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dropped: Option<Vec<ReleasedFeature>>,
+    /// The certificate of alignment of the others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alignment: Option<Alignment>,
+}
+
+/// A source of features and what it named.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FeatureSourceReport {
+    /// The source.
+    pub source: String,
+    /// Its edges.
+    pub edges: usize,
+}
+
+/// A vertex at which feature curves turn, meet or end.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FeatureNode {
+    /// The vertex.
+    pub vertex: u32,
+    /// Feature edges there.
+    pub degree: usize,
+    /// What it is: `open-end`, `boundary-end`, `turn` or `junction`.
+    pub kind: &'static str,
+}
+
+/// A curve of feature edges.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FeatureCurve {
+    /// Its vertices in order.
+    pub vertices: Vec<u32>,
+    /// Whether it closes.
+    #[serde(rename = "loop")]
+    pub is_loop: bool,
+    /// Its edges on the boundary.
+    pub boundary_edges: usize,
+    /// Its length, mesh units.
+    pub length: f64,
+}
+
+impl FeatureCurves {
+    fn new(surface: &Surface, edges: EdgeSet, sources: Vec<FeatureSourceReport>) -> Self {
+        let align_boundary =
+            sources.iter().any(|s| s.source == FeatureSource::Boundary.to_string());
+        let graph = FeatureGraph::new(surface.mesh(), surface.metric(), &edges);
+        let pairs = edges.vertex_pairs(surface.mesh());
+        let nodes = |of_kind: &dyn Fn(NodeKind) -> bool| {
+            let nodes = graph.nodes.iter().filter(|node| of_kind(node.kind));
+            nodes.map(|node| node.vertex.0).collect()
+        };
+        let report = FeatureReport {
+            // The boundary is told apart from the sources.
+            sources: sources
+                .into_iter()
+                .filter(|s| s.source != FeatureSource::Boundary.to_string())
+                .collect(),
+            align_boundary,
+            edges: edges.len(),
+            boundary_edges: graph.curves.iter().map(|curve| curve.boundary_edges).sum(),
+            length: graph.length(),
+            loops: graph.n_loops(),
+            turns: graph.count(NodeKind::Turn),
+            junctions: graph.count(NodeKind::Junction),
+            open_ends: graph.count(NodeKind::OpenEnd),
+            boundary_ends: graph.count(NodeKind::BoundaryEnd),
+            nodes: graph.nodes.iter().map(feature_node).collect(),
+            curves: graph.curves.iter().map(feature_curve).collect(),
+            kept: None,
+            dropped: None,
+            alignment: None,
+        };
+        Self {
+            corners: nodes(&|kind| kind != NodeKind::OpenEnd),
+            open_ends: nodes(&|kind| kind == NodeKind::OpenEnd),
+            edges,
+            pairs,
+            report,
+        }
+    }
+
+    /// The edges by their ends, vertices of the surface.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// Vertices at which curves meet or turn, or end on the boundary.
+    pub fn corners(&self) -> &[u32] {
+        &self.corners
+    }
+
+    /// Vertices at which curves end inside the surface.
+    pub fn open_ends(&self) -> &[u32] {
+        &self.open_ends
+    }
+
+    /// Their numbers.
+    pub fn report(&self) -> &FeatureReport {
+        &self.report
+    }
+}
+
+fn feature_node(node: &seamstress_mesh::features::Node) -> FeatureNode {
+    let kind = match node.kind {
+        NodeKind::OpenEnd => "open-end",
+        NodeKind::BoundaryEnd => "boundary-end",
+        NodeKind::Turn => "turn",
+        NodeKind::Junction => "junction",
+        _ => "other",
+    };
+    FeatureNode { vertex: node.vertex.0, degree: node.degree, kind }
+}
+
+fn feature_curve(curve: &seamstress_mesh::features::Curve) -> FeatureCurve {
+    FeatureCurve {
+        vertices: curve.vertices.iter().map(|v| v.0).collect(),
+        is_loop: curve.is_loop,
+        boundary_edges: curve.boundary_edges,
+        length: curve.length,
+    }
+}
+
+/// What became of features in a map: aligned, or dropped for a reason.
+#[derive(Debug, Clone)]
+pub(crate) struct AlignedFeatures {
+    /// The ends of those that are aligned.
+    pub(crate) kept: Vec<[u32; 2]>,
+    pub(crate) dropped: Vec<ReleasedFeature>,
+    pub(crate) report: FeatureReport,
+}
+
+impl AlignedFeatures {
+    /// Certifies that every feature is aligned in a map that is not named as dropped.
+    ///
+    /// # Errors
+    /// What is not aligned.
+    pub(crate) fn certify(
+        mesh: &TriMesh,
+        asked: FeatureCurves,
+        map: &SeamlessMap,
+        dropped: &[ReleasedFeature],
+    ) -> Result<Self, Violations> {
+        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let gone: BTreeSet<[u32; 2]> = dropped.iter().map(|f| ordered(f.vertices)).collect();
+        let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
+        let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
+        let alignment = Alignment::certify(mesh, map, &kept, &AlignmentTolerance::default())?;
+        let mut report = asked.report;
+        report.kept = Some(kept.len());
+        report.dropped = Some(dropped.to_vec());
+        report.alignment = Some(alignment);
+        Ok(Self { kept, dropped: dropped.to_vec(), report })
+    }
+
+    /// The ends of the features that are not aligned.
+    #[cfg(feature = "render")]
+    pub(crate) fn dropped_pairs(&self) -> Vec<[u32; 2]> {
+        self.dropped.iter().map(|feature| feature.vertices).collect()
+    }
+}
+
+/// The set of edges with these ends.
+pub(crate) fn edges_of(mesh: &TriMesh, pairs: &[[u32; 2]]) -> EdgeSet {
+    let edge = |&[a, b]: &[u32; 2]| mesh.edge_between(Vertex(a), Vertex(b));
+    EdgeSet::new(mesh, pairs.iter().filter_map(edge))
+}
+
+/// Finds the edges that sources name on a surface.
+///
+/// # Errors
+/// If a file cannot be read, or a source names what is not an edge.
+pub(crate) fn resolve(surface: &Surface, features: &Features) -> Result<FeatureCurves, Error> {
+    let namer = Namer::new(surface);
+    let mut edges = EdgeSet::new(surface.mesh(), []);
+    let mut sources = Vec::new();
+    for source in &features.sources {
+        let found =
+            namer.edges_of(source).map_err(|error| error.at_stage(Some(Stage::Features)))?;
+        sources.push(FeatureSourceReport { source: source.to_string(), edges: found.len() });
+        edges = edges.union(surface.mesh(), &found);
+    }
+    Ok(FeatureCurves::new(surface, edges, sources))
+}
+
+/// Turns the names of a source into edges.
+struct Namer<'a> {
+    surface: &'a Surface,
+    finder: EdgeFinder<'a>,
+}
+
+/// An edge by the vertices of the input, and what to call it in a message.
+struct Named {
+    pair: Result<[u32; 2], EdgeNameError>,
+    name: String,
+}
+
+impl<'a> Namer<'a> {
+    fn new(surface: &'a Surface) -> Self {
+        let finder = match surface.parts().vertex_origin.as_deref() {
+            Some(origin) => {
+                EdgeFinder::after_repair(surface.mesh(), origin, surface.parts().n_input_vertices)
+            }
+            None => EdgeFinder::new(surface.mesh()),
+        };
+        Self { surface, finder }
+    }
+
+    fn edges_of(&self, source: &FeatureSource) -> Result<EdgeSet, Error> {
+        let (surface, mesh) = (self.surface, self.surface.mesh());
+        match source {
+            FeatureSource::Angle(degrees) => {
+                Ok(sharp_edges(mesh, surface.positions(), degrees.to_radians()))
+            }
+            FeatureSource::Boundary => Ok(EdgeSet::boundary(mesh)),
+            FeatureSource::Lines => self.find(surface.input(), self.lines()?),
+            FeatureSource::Edges(edges) => {
+                let named =
+                    |&[a, b]: &[u32; 2]| Named { pair: Ok([a, b]), name: format!("edge {a}-{b}") };
+                self.find(surface.input(), edges.iter().map(named).collect())
+            }
+            #[cfg(feature = "io")]
+            FeatureSource::Pairs(file) => {
+                let lines = seamstress_io::read_pairs(file)?.into_iter();
+                let named = lines.map(|l| Named { pair: Ok(l.vertices), name: at_line(l.line) });
+                self.find(Some(&file.display().to_string()), named.collect())
+            }
+            #[cfg(feature = "io")]
+            FeatureSource::Sharp(file) => {
+                let lines = seamstress_io::read_sharp(file)?.into_iter();
+                let named =
+                    lines.map(|l| Named { pair: self.side(l.face, l.side), name: at_line(l.line) });
+                self.find(Some(&file.display().to_string()), named.collect())
+            }
+            #[cfg(not(feature = "io"))]
+            FeatureSource::Pairs(_) | FeatureSource::Sharp(_) => {
+                Err(Error::options(format!("features: {source} needs the feature `io`")))
+            }
+        }
+    }
+
+    fn lines(&self) -> Result<Vec<Named>, Error> {
+        let lines = &self.surface.parts().lines;
+        if lines.is_empty() {
+            let text = "features from lines need an OBJ file with `l` elements, and this has none";
+            return Err(Error::new(ErrorKind::BadFeatures, text).of(self.surface.input()));
+        }
+        let named = |&pair: &[u32; 2]| Named { pair: Ok(pair), name: "an `l` element".into() };
+        Ok(lines.iter().map(named).collect())
+    }
+
+    /// The ends of a side of a polygon of the input.
+    #[cfg(feature = "io")]
+    fn side(&self, face: u32, side: u32) -> Result<[u32; 2], EdgeNameError> {
+        let polygons = &self.surface.parts().polygons;
+        let Some(polygon) = polygons.get(face as usize) else {
+            return Err(EdgeNameError::NoSuchFace { face, n_faces: polygons.len() });
+        };
+        let n_sides = polygon.len();
+        match polygon.get(side as usize) {
+            Some(&from) => Ok([from, polygon[(side as usize + 1) % n_sides]]),
+            None => Err(EdgeNameError::NoSuchSide { face, side, n_sides }),
+        }
+    }
+
+    fn find(&self, source: Option<&str>, named: Vec<Named>) -> Result<EdgeSet, Error> {
+        let mut edges: Vec<Halfedge> = Vec::new();
+        let mut faults = Vec::new();
+        let mut elements = Elements::default();
+        for Named { pair, name } in named {
+            match pair.clone().and_then(|pair| self.finder.find(pair)) {
+                Ok(found) => edges.extend(found),
+                Err(error) => {
+                    elements.edges.extend(pair);
+                    faults.push(format!("{name}: {error}"));
+                }
+            }
+        }
+        if faults.is_empty() {
+            return Ok(EdgeSet::new(self.surface.mesh(), edges));
+        }
+        let more = faults.len().saturating_sub(LISTED);
+        faults.truncate(LISTED);
+        if more > 0 {
+            faults.push(format!("and {more} more"));
+        }
+        let of = self.surface.input().map_or(String::from("the surface"), str::to_owned);
+        let text = format!("not edges of {of}:\n  {}", faults.join("\n  "));
+        Err(Error::new(ErrorKind::BadFeatures, text).of(source).with_elements(elements))
+    }
+}
+
+#[cfg(feature = "io")]
+fn at_line(line: usize) -> String {
+    format!("line {line}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_are_read_and_written_alike() {
+        let good = [
+            "angle:40",
+            "angle:0.5",
+            "boundary",
+            "lines",
+            "edges:0-1,4-2",
+            "pairs:a b.txt",
+            "sharp:C:\\x.sharp",
+        ];
+        for text in good {
+            let source: FeatureSource = text.parse().unwrap();
+            assert_eq!(source.to_string(), text);
+        }
+        let bad = [
+            "",
+            "angle",
+            "angle:0",
+            "angle:181",
+            "angle:nan",
+            "lines:3",
+            "pairs",
+            "pairs:",
+            "edges:x",
+            "edges:1",
+            "edges:1-2-3",
+            "boundary:1",
+        ];
+        for text in bad {
+            assert!(text.parse::<FeatureSource>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn features_are_a_list_of_sources_in_json() {
+        let features = Features::angle(40.0).with_boundary();
+        let text = serde_json::to_string(&features).unwrap();
+        assert_eq!(text, r#"["angle:40","boundary"]"#);
+        assert_eq!(serde_json::from_str::<Features>(&text).unwrap(), features);
+        assert!(serde_json::from_str::<Features>(r#"["angle:0"]"#).is_err());
+    }
+}

@@ -1,0 +1,318 @@
+//! Integer-grid maps.
+
+use crate::certify::CertifyOptions;
+use crate::context::Watcher;
+use crate::error::{Error, ErrorKind, Stage};
+use crate::features::{AlignedFeatures, FeatureReport, Features, edges_of};
+use crate::map::CornerUvs;
+use crate::options::{GridRounding, GridSize, IntegerMapOptions};
+use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
+use crate::surface::Surface;
+use crate::words::{counted, rounded};
+use seamstress_parametrize::map::{Certificate, Cone};
+use seamstress_parametrize::{self as method};
+use seamstress_quantize::{
+    self as quantize, IntegerCertificate, IntegerError, IntegerSolution, IntegerStats,
+    to_aligned_integer_map,
+};
+use serde::Serialize;
+#[cfg(feature = "io")]
+use std::{io, path::Path};
+
+/// A certified seamless map whose unit grid closes up over the surface: translations and cones are whole numbers.
+#[derive(Debug, Clone)]
+pub struct IntegerGridMap {
+    surface: Surface,
+    map: quantize::IntegerMap,
+    corners: CornerUvs,
+    features: Option<AlignedFeatures>,
+    report: IntegerMapReport,
+}
+
+/// How an integer-grid map was made, and how good it is.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct IntegerMapReport {
+    /// The version that made it.
+    pub seamstress: &'static str,
+    /// The options it was made with.
+    pub options: IntegerMapOptions,
+    /// The surface.
+    pub input: SurfaceReport,
+    /// The grid asked for and the one made.
+    pub grid: GridReport,
+    /// How the map of each component was made, in order of first faces.
+    pub components: Vec<IntegerStats>,
+    /// Distortion of the seamless map it was made from.
+    pub distortion_before: Distortion,
+    /// Its own distortion.
+    pub distortion: Distortion,
+    /// Its cones.
+    pub cones: ConeReport,
+    /// Its seams.
+    pub seams: SeamReport,
+    /// What was checked of it as a seamless map.
+    pub certificate: Certificate,
+    /// What was checked of the whole numbers.
+    pub integer_certificate: IntegerCertificate,
+    /// The features asked for and what became of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub features: Option<FeatureReport>,
+}
+
+/// A grid asked for and the one made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct GridReport {
+    /// As asked for.
+    pub requested: GridSize,
+    /// Area of the map in grid units: the number of quads of a closed surface.
+    pub quads: f64,
+    /// Edge length of a cell, mesh units, before any component needed a finer one.
+    pub edge_length: f64,
+    /// Cells per mesh unit.
+    pub scale: f64,
+    /// Finer grids that were needed, over all components.
+    pub refinements: usize,
+    /// Cell sizes tried to meet a number of quads.
+    pub sizes_tried: usize,
+}
+
+impl GridReport {
+    pub(crate) fn new(requested: GridSize, solution: &IntegerSolution) -> Self {
+        Self {
+            requested,
+            quads: solution.quads(),
+            edge_length: solution.cell,
+            scale: 1.0 / solution.cell,
+            refinements: solution.refinements(),
+            sizes_tried: solution.sizes_tried,
+        }
+    }
+
+    /// What was asked for, and what came out.
+    pub(crate) fn line(&self) -> String {
+        let asked = match self.requested {
+            GridSize::Quads(quads) => format!("{quads} quads"),
+            GridSize::EdgeLength(length) => format!("edge length {}", rounded(length)),
+            GridSize::Scale(scale) => format!("scale {}", rounded(scale)),
+        };
+        let mut text = format!("{:.1} quads, asked for {asked}", self.quads);
+        if self.refinements > 0 {
+            let times = counted(self.refinements, "time");
+            text += &format!("; {times} finer where cones are close");
+        }
+        text
+    }
+}
+
+impl std::fmt::Display for GridReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.line())
+    }
+}
+
+impl IntegerGridMap {
+    /// The surface it is of.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The UVs, grid units: one for each vertex, and one more wherever a seam gives it another.
+    pub fn uvs(&self) -> &[[f64; 2]] {
+        &self.corners.uvs
+    }
+
+    /// For each face of the surface the UVs of its corners.
+    pub fn face_uvs(&self) -> &[[u32; 3]] {
+        &self.corners.faces
+    }
+
+    /// The UV of every corner, three a face.
+    pub fn corner_uvs(&self) -> &[[f64; 2]] {
+        self.map.corner_uvs()
+    }
+
+    /// Interior vertices with an angle other than a full turn, ascending; all at grid points.
+    pub fn cones(&self) -> &[Cone] {
+        self.map.seamless().cones()
+    }
+
+    /// What was checked of the whole numbers.
+    pub fn certificate(&self) -> &IntegerCertificate {
+        self.map.certificate()
+    }
+
+    /// How it was made, and how good it is.
+    pub fn report(&self) -> &IntegerMapReport {
+        &self.report
+    }
+
+    /// Writes it as OBJ, with the positions and faces of the surface; the file appears when it is complete.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`].
+    #[cfg(feature = "io")]
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        crate::files::write(path.as_ref(), |file| self.write_to(file))
+    }
+
+    /// Writes it as OBJ.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    #[cfg(feature = "io")]
+    pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
+        let lines = ["One quad per unit square".into(), self.report.grid.line()];
+        crate::map::write_map(writer, &self.surface, "Integer-grid map", self.corner_uvs(), &lines)
+    }
+
+    #[cfg(feature = "render")]
+    pub(crate) fn inner(&self) -> &quantize::IntegerMap {
+        &self.map
+    }
+
+    #[cfg(feature = "render")]
+    pub(crate) fn features(&self) -> Option<&AlignedFeatures> {
+        self.features.as_ref()
+    }
+}
+
+/// What an integer-grid map is made from.
+pub(crate) struct SeamlessStart {
+    pub(crate) map: method::SeamlessMap,
+    pub(crate) features: Option<AlignedFeatures>,
+}
+
+impl Surface {
+    /// Makes a seamless map whose cones suit the grid, and rounds it to an integer-grid map.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NoIntegerMap`], and those of [`Surface::parametrize`].
+    pub fn integer_map(&self, options: &IntegerMapOptions) -> Result<IntegerGridMap, Error> {
+        options.validate()?;
+        let made = self.context().run(|watcher| {
+            let start = self.make_seamless(options, watcher)?;
+            let solution = self.make_integer(&start, options.size, options, watcher)?;
+            Ok(self.integer_grid_map(solution, start.features, options))
+        });
+        made.map_err(|error| error.of(self.input()))
+    }
+
+    /// Rounds a seamless map of this surface, from anywhere, to an integer-grid map. Features that it has on its
+    /// axes come to lie on lines of the grid; the others are dropped.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotAMap`] if it is no seamless map to the tolerance of `certify`, and those of
+    /// [`Surface::integer_map`].
+    pub fn integer_map_of(
+        &self,
+        uvs: &[[f64; 2]],
+        face_uvs: &[[u32; 3]],
+        certify: &CertifyOptions,
+        options: &IntegerMapOptions,
+    ) -> Result<IntegerGridMap, Error> {
+        options.validate()?;
+        let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
+        let made = self.context().run(|watcher| {
+            let map = self.seamless_map(corner_uvs, certify)?;
+            let features = self.followed(&map, &options.map.features)?;
+            let start = SeamlessStart { map, features };
+            let solution = self.make_integer(&start, options.size, options, watcher)?;
+            Ok(self.integer_grid_map(solution, start.features, options))
+        });
+        made.map_err(|error| error.of(self.input()))
+    }
+
+    /// What a map that is given follows of the features asked for.
+    fn followed(
+        &self,
+        map: &method::SeamlessMap,
+        features: &Features,
+    ) -> Result<Option<AlignedFeatures>, Error> {
+        if features.is_none() {
+            return Ok(None);
+        }
+        let asked = self.features(features)?;
+        let (_, dropped) = method::followed(self.mesh(), map, asked.edges.clone())
+            .map_err(|violations| self.not_a_map(&violations))?;
+        let aligned = AlignedFeatures::certify(self.mesh(), asked, map, &dropped);
+        aligned.map(Some).map_err(|violations| self.not_a_map(&violations))
+    }
+
+    /// The seamless map to start from, by the direct method, its cones those of a grid of this size.
+    pub(crate) fn make_seamless(
+        &self,
+        options: &IntegerMapOptions,
+        watcher: &mut Watcher,
+    ) -> Result<SeamlessStart, Error> {
+        let mut settings = options.map.to_method();
+        settings.cell = Some(options.size.to_quantize().cell(self.metric().side()));
+        let made = self.make_map(&options.map, settings, watcher)?;
+        Ok(SeamlessStart { map: made.inner().clone(), features: made.features().cloned() })
+    }
+
+    /// Rounds a seamless map, its aligned features to lines of the grid.
+    pub(crate) fn make_integer(
+        &self,
+        start: &SeamlessStart,
+        size: GridSize,
+        options: &IntegerMapOptions,
+        watcher: &mut Watcher,
+    ) -> Result<IntegerSolution, Error> {
+        let kept: &[[u32; 2]] = start.features.as_ref().map_or(&[], |features| &features.kept);
+        let mut settings = options.to_quantize();
+        settings.size = size.to_quantize();
+        let mut observe = |progress| watcher.observe(progress);
+        let made = to_aligned_integer_map(
+            self.mesh(),
+            self.positions(),
+            &start.map,
+            &edges_of(self.mesh(), kept),
+            &settings,
+            &mut observe,
+        );
+        made.map_err(|cause| match cause {
+            IntegerError::Cancelled(_) => Error::new(ErrorKind::Cancelled, "stopped on request"),
+            cause => {
+                let text = format!("no certified integer-grid map could be made: {cause}");
+                let error = Error::new(ErrorKind::NoIntegerMap, text);
+                error.at_stage(Some(Stage::Quantization)).with_hint(hint(options.rounding))
+            }
+        })
+    }
+
+    fn integer_grid_map(
+        &self,
+        solution: IntegerSolution,
+        features: Option<AlignedFeatures>,
+        options: &IntegerMapOptions,
+    ) -> IntegerGridMap {
+        let seamless = solution.map.seamless();
+        let report = IntegerMapReport {
+            seamstress: VERSION,
+            options: options.clone(),
+            input: self.report().clone(),
+            grid: GridReport::new(options.size, &solution),
+            distortion_before: Distortion::from(&solution.before),
+            distortion: Distortion::from(&solution.distortion),
+            cones: ConeReport::new(seamless.cones()),
+            seams: SeamReport::new(seamless.seams()),
+            certificate: seamless.certificate().clone(),
+            integer_certificate: solution.map.certificate().clone(),
+            features: features.as_ref().map(|features| features.report.clone()),
+            components: solution.components,
+        };
+        let corners = CornerUvs::new(self.faces(), solution.map.corner_uvs());
+        IntegerGridMap { surface: self.clone(), map: solution.map, corners, features, report }
+    }
+}
+
+fn hint(rounding: GridRounding) -> &'static str {
+    match rounding {
+        GridRounding::Constrained => "try a finer grid, or fewer cones with a larger `cone_bias`",
+        GridRounding::Greedy => {
+            "greedy `rounding` is for comparison; leave it out, or try a finer grid"
+        }
+    }
+}

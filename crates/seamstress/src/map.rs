@@ -1,0 +1,322 @@
+//! Seamless maps.
+
+use crate::context::Watcher;
+use crate::error::{Error, ErrorKind};
+use crate::features::{AlignedFeatures, FeatureReport};
+use crate::finding::{Elements, listing};
+use crate::options::MapOptions;
+use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
+use crate::surface::Surface;
+use crate::words::{counted, rounded};
+use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
+use seamstress_parametrize::{
+    self as method, ComponentStats, MapError, ReleasedFeature, Violations, make_aligned_map,
+};
+use serde::Serialize;
+use std::collections::HashMap;
+#[cfg(feature = "io")]
+use std::{io, path::Path};
+
+/// A certified seamless map of a surface.
+#[derive(Debug, Clone)]
+pub struct SeamlessMap {
+    surface: Surface,
+    map: method::SeamlessMap,
+    corners: CornerUvs,
+    features: Option<AlignedFeatures>,
+    report: MapReport,
+}
+
+/// How a map was made, and how good it is.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct MapReport {
+    /// The version that made it.
+    pub seamstress: &'static str,
+    /// The options it was made with.
+    pub options: MapOptions,
+    /// The surface.
+    pub input: SurfaceReport,
+    /// How the map of each component was made, in order of first faces.
+    pub components: Vec<ComponentStats>,
+    /// Its distortion.
+    pub distortion: Distortion,
+    /// Its cones.
+    pub cones: ConeReport,
+    /// Its seams.
+    pub seams: SeamReport,
+    /// What was checked of it.
+    pub certificate: Certificate,
+    /// The features asked for and what became of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub features: Option<FeatureReport>,
+}
+
+impl SeamlessMap {
+    pub(crate) fn new(
+        surface: &Surface,
+        map: method::SeamlessMap,
+        features: Option<AlignedFeatures>,
+        options: &MapOptions,
+        components: Vec<ComponentStats>,
+    ) -> Self {
+        let distortion =
+            method::quality::distortion(surface.mesh(), surface.metric(), map.corner_uvs());
+        let report = MapReport {
+            seamstress: VERSION,
+            options: options.clone(),
+            input: surface.report().clone(),
+            components,
+            distortion: Distortion::from(&distortion),
+            cones: ConeReport::new(map.cones()),
+            seams: SeamReport::new(map.seams()),
+            certificate: map.certificate().clone(),
+            features: features.as_ref().map(|features| features.report.clone()),
+        };
+        let corners = CornerUvs::new(surface.faces(), map.corner_uvs());
+        Self { surface: surface.clone(), map, corners, features, report }
+    }
+
+    /// The surface it is of.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The UVs, mesh units: one for each vertex, and one more wherever a seam gives it another.
+    pub fn uvs(&self) -> &[[f64; 2]] {
+        &self.corners.uvs
+    }
+
+    /// For each face of the surface the UVs of its corners.
+    pub fn face_uvs(&self) -> &[[u32; 3]] {
+        &self.corners.faces
+    }
+
+    /// The UV of every corner, three a face.
+    pub fn corner_uvs(&self) -> &[[f64; 2]] {
+        self.map.corner_uvs()
+    }
+
+    /// Interior vertices with an angle other than a full turn, ascending.
+    pub fn cones(&self) -> &[Cone] {
+        self.map.cones()
+    }
+
+    /// Interior edges across which the UVs jump.
+    pub fn seams(&self) -> &[SeamEdge] {
+        self.map.seams()
+    }
+
+    /// What was checked.
+    pub fn certificate(&self) -> &Certificate {
+        self.map.certificate()
+    }
+
+    /// Feature edges that it has on its axes, by their ends.
+    pub fn aligned_edges(&self) -> &[[u32; 2]] {
+        self.features.as_ref().map_or(&[], |features| &features.kept)
+    }
+
+    /// Features asked for that it does not follow, each with the reason.
+    pub fn dropped_features(&self) -> &[ReleasedFeature] {
+        self.features.as_ref().map_or(&[], |features| &features.dropped)
+    }
+
+    /// How it was made, and how good it is.
+    pub fn report(&self) -> &MapReport {
+        &self.report
+    }
+
+    /// Writes it as OBJ, with the positions and faces of the surface; the file appears when it is complete.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`].
+    #[cfg(feature = "io")]
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        crate::files::write(path.as_ref(), |file| self.write_to(file))
+    }
+
+    /// Writes it as OBJ.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    #[cfg(feature = "io")]
+    pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
+        let lines = [self.report.distortion.line(self.cones().len())];
+        write_map(writer, &self.surface, "Seamless map", self.corner_uvs(), &lines)
+    }
+
+    pub(crate) fn inner(&self) -> &method::SeamlessMap {
+        &self.map
+    }
+
+    pub(crate) fn features(&self) -> Option<&AlignedFeatures> {
+        self.features.as_ref()
+    }
+}
+
+impl Distortion {
+    /// For the head of a file.
+    pub(crate) fn line(&self, cones: usize) -> String {
+        format!(
+            "tau {}, symmetric Dirichlet energy {}, {}",
+            rounded(self.tau),
+            rounded(self.symmetric_dirichlet),
+            counted(cones, "cone")
+        )
+    }
+}
+
+/// A map of a surface as OBJ, with its title, its source and more in comments.
+#[cfg(feature = "io")]
+pub(crate) fn write_map(
+    writer: &mut impl io::Write,
+    surface: &Surface,
+    title: &str,
+    corner_uvs: &[[f64; 2]],
+    lines: &[String],
+) -> io::Result<()> {
+    let mut comments = vec![format!("{title} by Seamstress {VERSION}")];
+    comments.extend(source_line(surface));
+    comments.extend_from_slice(lines);
+    let (positions, faces) = (surface.positions(), surface.faces());
+    let map = seamstress_io::MapObj { positions, faces, corner_uvs, comments: &comments };
+    seamstress_io::write_map_obj(writer, &map)
+}
+
+/// Where a surface comes from, for the head of a file.
+#[cfg(feature = "io")]
+pub(crate) fn source_line(surface: &Surface) -> Option<String> {
+    let path = Path::new(surface.input()?);
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    let repaired = match surface.report().repairs.len() {
+        0 => String::new(),
+        n => format!(", after {}", counted(n, "repair")),
+    };
+    Some(format!("Source: {}{repaired}", name.display()))
+}
+
+/// UVs with corners that share one.
+#[derive(Debug, Clone)]
+pub(crate) struct CornerUvs {
+    pub(crate) uvs: Vec<[f64; 2]>,
+    pub(crate) faces: Vec<[u32; 3]>,
+}
+
+impl CornerUvs {
+    /// Corners of a vertex share a UV if theirs are equal to the bit, as in a file.
+    pub(crate) fn new(faces: &[[u32; 3]], corner_uvs: &[[f64; 2]]) -> Self {
+        let mut known = HashMap::new();
+        let mut uvs = Vec::new();
+        let mut index = |vertex: u32, uv: [f64; 2]| {
+            *known.entry((vertex, uv.map(f64::to_bits))).or_insert_with(|| {
+                uvs.push(uv);
+                (uvs.len() - 1) as u32
+            })
+        };
+        let corners = faces.iter().zip(corner_uvs.chunks_exact(3));
+        let faces = corners.map(|(face, uvs)| [0, 1, 2].map(|k| index(face[k], uvs[k]))).collect();
+        Self { uvs, faces }
+    }
+}
+
+impl Surface {
+    /// Makes a seamless map of low distortion by the direct method, and certifies it.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NoMap`] where the method finds none that it can vouch for, [`ErrorKind::DroppedFeatures`],
+    /// [`ErrorKind::BadFeatures`], [`ErrorKind::Options`], [`ErrorKind::Cancelled`] and [`ErrorKind::TimeLimit`].
+    ///
+    /// # Source
+    /// Levi 2021.
+    pub fn parametrize(&self, options: &MapOptions) -> Result<SeamlessMap, Error> {
+        options.validate()?;
+        let made =
+            self.context().run(|watcher| self.make_map(options, options.to_method(), watcher));
+        made.map_err(|error| error.of(self.input()))
+    }
+
+    /// The map by the direct method with these settings.
+    pub(crate) fn make_map(
+        &self,
+        options: &MapOptions,
+        settings: method::MapOptions,
+        watcher: &mut Watcher,
+    ) -> Result<SeamlessMap, Error> {
+        let asked = self.features(&options.features)?;
+        let mut observe = |progress| watcher.observe(progress);
+        let solution =
+            make_aligned_map(self.mesh(), self.positions(), &asked.edges, &settings, &mut observe)
+                .map_err(|cause| self.no_map(&cause))?;
+        let features = match options.features.is_none() {
+            true => None,
+            false => Some(
+                AlignedFeatures::certify(self.mesh(), asked, &solution.map, &solution.released)
+                    .map_err(|violations| self.misaligned(&violations))?,
+            ),
+        };
+        Ok(SeamlessMap::new(self, solution.map, features, options, solution.components))
+    }
+
+    /// Why there is no map.
+    pub(crate) fn no_map(&self, cause: &MapError) -> Error {
+        let elements = |elements: Elements| self.in_input(&elements);
+        match cause {
+            MapError::Cancelled(_) => Error::new(ErrorKind::Cancelled, "stopped on request"),
+            MapError::Released { released } => {
+                let edges = released.iter().map(|feature| feature.vertices).collect();
+                let found = Elements { edges, ..Elements::default() };
+                Error::new(ErrorKind::DroppedFeatures, cause.to_string())
+                    .with_elements(elements(found))
+                    .with_hint("without `features_strict` the map is made without them")
+            }
+            MapError::Field(_) | MapError::Cones(_) => {
+                Error::new(ErrorKind::BadStart, cause.to_string())
+            }
+            _ => {
+                let message = format!("no certified map could be made: {cause}");
+                let error = Error::new(ErrorKind::NoMap, message).with_hint(
+                    "this is a limit of the method: try another `cone_bias`, or remesh triangles that are \
+                     very thin or without area",
+                );
+                match cause {
+                    MapError::Component { face, .. } => {
+                        let faces = vec![*face];
+                        error.with_elements(elements(Elements { faces, ..Elements::default() }))
+                    }
+                    MapError::Uncertified(violations) => {
+                        error.with_findings(self.findings(violations))
+                    }
+                    _ => error,
+                }
+            }
+        }
+    }
+
+    /// A fault of this program.
+    fn misaligned(&self, violations: &Violations) -> Error {
+        let text = format!("a map was made, but its features are not aligned: {violations}");
+        Error::new(ErrorKind::Internal, text)
+            .with_findings(self.findings(violations))
+            .with_hint("please report this with the mesh")
+    }
+
+    /// The error for what is no seamless map of this surface.
+    pub(crate) fn not_a_map(&self, violations: &Violations) -> Error {
+        let findings = self.findings(violations);
+        let text = format!(
+            "not a seamless map: {} (elements counted from 0):\n  {}",
+            counted(findings.len(), "violation"),
+            listing(&findings, LISTED).join("\n  ")
+        );
+        let error = Error::new(ErrorKind::NotAMap, text).with_findings(findings);
+        let is_open = violations.0.iter().all(|v| matches!(v, method::Violation::OpenSeam { .. }));
+        match is_open {
+            true => error.with_hint("a larger `tolerance` allows seams that are open by rounding"),
+            false => error,
+        }
+    }
+}
+
+/// Violations of each kind that an error lists.
+const LISTED: usize = 5;

@@ -1,0 +1,451 @@
+//! Options: what a user has a reason to change. One text each, for documentation, command line and JSON.
+
+use crate::error::Error;
+use crate::features::{FeatureSource, Features};
+use seamstress_parametrize::rounding::RoundingOptions;
+use seamstress_parametrize::{self as method, Objective, PolishOptions};
+use seamstress_quantize as quantize;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Options of [`Surface::parametrize`](crate::Surface::parametrize).
+///
+/// In JSON an object with any of the fields; times are in seconds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct MapOptions {
+    /// Edges that the map should have on its axes
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub features: Features,
+
+    /// Fail if a feature cannot be aligned, instead of dropping and reporting it
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub features_strict: bool,
+
+    /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
+        default_value_t = Self::default().cone_bias))]
+    pub cone_bias: f64,
+
+    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
+    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded [default: 0.0006;
+    /// for quads the share of the surface that four of them have, but at least 0.0015]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative))]
+    pub cone_price: Option<f64>,
+
+    /// How much corners between features keep to their own angle: larger values give fewer false
+    /// corners and more distortion
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
+        default_value_t = Self::default().corner_weight))]
+    pub corner_weight: f64,
+
+    /// Leave out the polish that lowers the largest distortion (tau)
+    #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
+    pub no_tau_polish: bool,
+
+    /// Stop that polish after this many seconds; the map then depends on the machine [default: no
+    /// limit]
+    #[serde(with = "seconds")]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = parse::seconds))]
+    pub polish_time: Option<Duration>,
+
+    /// Maximum relative increase of the mean symmetric Dirichlet energy allowed to that polish
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
+        default_value_t = Self::default().max_energy_rise))]
+    pub max_energy_rise: f64,
+
+    /// Minimise this in the end, instead of the compromise of mean and worst distortion
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_parser = parse::objective()))]
+    pub objective: Option<Objective>,
+}
+
+impl Default for MapOptions {
+    fn default() -> Self {
+        let rounding = RoundingOptions::default();
+        Self {
+            features: Features::none(),
+            features_strict: false,
+            cone_bias: rounding.cone_bias,
+            cone_price: None,
+            corner_weight: rounding.corner_weight,
+            no_tau_polish: false,
+            polish_time: None,
+            max_energy_rise: PolishOptions::default().max_energy_rise,
+            objective: None,
+        }
+    }
+}
+
+impl MapOptions {
+    /// Sets the features.
+    pub fn features(mut self, features: Features) -> Self {
+        self.features = features;
+        self
+    }
+
+    /// Sets how much to avoid cones, 0 or more.
+    pub fn cone_bias(mut self, cone_bias: f64) -> Self {
+        self.cone_bias = cone_bias;
+        self
+    }
+
+    /// Sets the price of a cone, 0 or more.
+    pub fn cone_price(mut self, cone_price: f64) -> Self {
+        self.cone_price = Some(cone_price);
+        self
+    }
+
+    /// Sets what to minimise in the end.
+    pub fn objective(mut self, objective: Objective) -> Self {
+        self.objective = Some(objective);
+        self
+    }
+
+    /// Checks that every option has a value it can have. Everything that takes options does this first.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
+    pub fn validate(&self) -> Result<(), Error> {
+        self.features.validate()?;
+        not_negative("cone_bias", self.cone_bias)?;
+        not_negative("corner_weight", self.corner_weight)?;
+        not_negative("max_energy_rise", self.max_energy_rise)?;
+        self.cone_price.map_or(Ok(()), |price| not_negative("cone_price", price))
+    }
+
+    pub(crate) fn to_method(&self) -> method::MapOptions {
+        let mut options = method::MapOptions::default();
+        options.rounding.cone_bias = self.cone_bias;
+        options.rounding.corner_weight = self.corner_weight;
+        options.cone_price = self.cone_price;
+        options.strict_features = self.features_strict;
+        options.polish = (!self.no_tau_polish).then_some(PolishOptions {
+            max_energy_rise: self.max_energy_rise,
+            time_limit: self.polish_time,
+        });
+        options.objective = self.objective;
+        options
+    }
+}
+
+/// How fine a grid is to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GridSize {
+    /// About so many quads in all.
+    Quads(f64),
+    /// Mean edge length of the quads, mesh units.
+    EdgeLength(f64),
+    /// Grid units per mesh unit.
+    Scale(f64),
+}
+
+impl Default for GridSize {
+    fn default() -> Self {
+        Self::Quads(5000.0)
+    }
+}
+
+impl GridSize {
+    fn validate(self) -> Result<(), Error> {
+        let (name, value) = match self {
+            Self::Quads(x) => ("quads", x),
+            Self::EdgeLength(x) => ("edge_length", x),
+            Self::Scale(x) => ("scale", x),
+        };
+        match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(Error::options(format!("{name}: {value} is no number larger than 0"))),
+        }
+    }
+
+    pub(crate) fn from_quantize(size: quantize::GridSize) -> Self {
+        match size {
+            quantize::GridSize::Quads(x) => Self::Quads(x),
+            quantize::GridSize::EdgeLength(x) => Self::EdgeLength(x),
+            quantize::GridSize::Scale(x) => Self::Scale(x),
+        }
+    }
+
+    pub(crate) fn to_quantize(self) -> quantize::GridSize {
+        match self {
+            Self::Quads(x) => quantize::GridSize::Quads(x),
+            Self::EdgeLength(x) => quantize::GridSize::EdgeLength(x),
+            Self::Scale(x) => quantize::GridSize::Scale(x),
+        }
+    }
+}
+
+/// How whole numbers are chosen for an integer-grid map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum GridRounding {
+    /// The nearest whole numbers in the symmetric Dirichlet energy that keep cones apart
+    #[default]
+    Constrained,
+    /// One number after the other in the energy that preserves Jacobians; often fails
+    Greedy,
+}
+
+/// Options of [`Surface::integer_map`](crate::Surface::integer_map).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct IntegerMapOptions {
+    /// How fine the grid is to be
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub size: GridSize,
+
+    /// How the whole numbers are chosen
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "HOW",
+        default_value_t = GridRounding::Constrained))]
+    pub rounding: GridRounding,
+
+    /// The seamless map that is made first
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub map: MapOptions,
+}
+
+impl IntegerMapOptions {
+    /// A grid of about so many cells in all.
+    pub fn count(quads: u32) -> Self {
+        Self { size: GridSize::Quads(f64::from(quads)), ..Self::default() }
+    }
+
+    /// A grid with cells of this edge length, mesh units.
+    pub fn edge_length(length: f64) -> Self {
+        Self { size: GridSize::EdgeLength(length), ..Self::default() }
+    }
+
+    /// Sets the options of the seamless map.
+    pub fn map(mut self, map: MapOptions) -> Self {
+        self.map = map;
+        self
+    }
+
+    /// Sets the features, which come to lie on lines of the grid.
+    pub fn features(mut self, features: Features) -> Self {
+        self.map.features = features;
+        self
+    }
+
+    /// Checks every option, as [`MapOptions::validate`] does.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
+    pub fn validate(&self) -> Result<(), Error> {
+        self.size.validate()?;
+        self.map.validate()
+    }
+
+    pub(crate) fn to_quantize(&self) -> quantize::IntegerOptions {
+        let mut options = quantize::IntegerOptions::default();
+        options.size = self.size.to_quantize();
+        options.rounding = match self.rounding {
+            GridRounding::Constrained => quantize::IntegerRounding::Constrained,
+            GridRounding::Greedy => quantize::IntegerRounding::Greedy,
+        };
+        options
+    }
+}
+
+/// What is done to the vertices of extracted quads.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct ShapeOptions {
+    /// Leave every vertex where the map has it, and badly shaped quads as they are
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub raw: bool,
+
+    /// Move the vertices along the surface this many times, to even out angles and lengths
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 0,
+        value_parser = clap::value_parser!(u32).range(0..=1000)))]
+    pub smooth: u32,
+}
+
+/// Options of [`Surface::quad_mesh`](crate::Surface::quad_mesh).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct QuadOptions {
+    /// How fine the grid is to be
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub size: GridSize,
+
+    /// What is done to the vertices
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub shape: ShapeOptions,
+
+    /// The seamless map that is made first
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub map: MapOptions,
+}
+
+impl QuadOptions {
+    /// About so many quads in all.
+    pub fn count(quads: u32) -> Self {
+        Self { size: GridSize::Quads(f64::from(quads)), ..Self::default() }
+    }
+
+    /// Quads of this edge length, mesh units.
+    pub fn edge_length(length: f64) -> Self {
+        Self { size: GridSize::EdgeLength(length), ..Self::default() }
+    }
+
+    /// Sets the features, which chains of edges of quads follow.
+    pub fn features(mut self, features: Features) -> Self {
+        self.map.features = features;
+        self
+    }
+
+    /// Sets the options of the seamless map.
+    pub fn map(mut self, map: MapOptions) -> Self {
+        self.map = map;
+        self
+    }
+
+    /// Whether to leave every vertex where the map has it.
+    pub fn raw(mut self, raw: bool) -> Self {
+        self.shape.raw = raw;
+        self
+    }
+
+    /// Sets how often the vertices are smoothed along the surface.
+    pub fn smooth(mut self, rounds: u32) -> Self {
+        self.shape.smooth = rounds;
+        self
+    }
+
+    /// Checks every option, as [`MapOptions::validate`] does.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
+    pub fn validate(&self) -> Result<(), Error> {
+        self.size.validate()?;
+        self.map.validate()
+    }
+}
+
+impl Features {
+    fn validate(&self) -> Result<(), Error> {
+        for source in self.sources() {
+            if let FeatureSource::Angle(degrees) = source
+                && !(*degrees > 0.0 && *degrees <= 180.0)
+            {
+                let text = format!("features: {degrees} is no angle above 0 and up to 180 degrees");
+                return Err(Error::options(text));
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn not_negative(name: &str, value: f64) -> Result<(), Error> {
+    match value.is_finite() && value >= 0.0 {
+        true => Ok(()),
+        false => Err(Error::options(format!("{name}: {value} is no number of 0 or larger"))),
+    }
+}
+
+/// Durations in JSON: seconds.
+pub(crate) mod seconds {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::time::Duration;
+
+    pub(crate) fn serialize<S: Serializer>(
+        time: &Option<Duration>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        time.map(|time| time.as_secs_f64()).serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Duration>, D::Error> {
+        let seconds = Option::<f64>::deserialize(deserializer)?;
+        let time = |seconds: f64| {
+            let time = Some(seconds).filter(|x| *x > 0.0);
+            let time = time.and_then(|x| Duration::try_from_secs_f64(x).ok());
+            time.ok_or_else(|| {
+                serde::de::Error::custom("expected a number of seconds larger than 0")
+            })
+        };
+        seconds.map(time).transpose()
+    }
+}
+
+/// Parsers of arguments.
+#[cfg(feature = "clap")]
+pub(crate) mod parse {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    use seamstress_parametrize::Objective;
+    use std::time::Duration;
+
+    pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+        match text.parse::<f64>() {
+            Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+            _ => Err("expected a number, 0 or larger".into()),
+        }
+    }
+
+    pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+        let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
+        positive
+            .and_then(|x| Duration::try_from_secs_f64(x).ok())
+            .ok_or_else(|| "expected a number of seconds larger than 0".into())
+    }
+
+    /// Names of objectives.
+    pub(crate) fn objective() -> impl TypedValueParser<Value = Objective> {
+        PossibleValuesParser::new(Objective::ALL.map(Objective::name)).map(|name| {
+            // The parser lets no other name pass.
+            let named = Objective::ALL.into_iter().find(|objective| objective.name() == name);
+            named.unwrap_or(Objective::SymmetricDirichlet)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_survive_json() {
+        let mut options = QuadOptions::count(1500).features(Features::angle(40.0)).smooth(3);
+        options.map.polish_time = Some(Duration::from_millis(2500));
+        options.map.objective = Some(Objective::SymmetricDirichlet);
+        let text = serde_json::to_string(&options).unwrap();
+        assert_eq!(serde_json::from_str::<QuadOptions>(&text).unwrap(), options);
+        assert_eq!(serde_json::from_str::<QuadOptions>("{}").unwrap(), QuadOptions::default());
+    }
+
+    #[test]
+    fn unknown_and_impossible_options_are_named() {
+        let unknown = serde_json::from_str::<MapOptions>(r#"{"cone_bais": 1}"#).unwrap_err();
+        assert!(unknown.to_string().contains("cone_bais"), "{unknown}");
+        let cases: [(MapOptions, &str); 4] = [
+            (MapOptions::default().cone_bias(-1.0), "cone_bias"),
+            (MapOptions::default().cone_price(f64::NAN), "cone_price"),
+            (MapOptions::default().features(Features::angle(0.0)), "features"),
+            (
+                MapOptions { max_energy_rise: f64::INFINITY, ..Default::default() },
+                "max_energy_rise",
+            ),
+        ];
+        for (options, name) in cases {
+            let error = options.validate().unwrap_err();
+            assert_eq!(error.code(), "options");
+            assert!(error.to_string().starts_with(name), "{error}");
+        }
+        let error = QuadOptions::edge_length(0.0).validate().unwrap_err();
+        assert!(error.to_string().starts_with("edge_length"), "{error}");
+    }
+}

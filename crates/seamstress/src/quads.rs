@@ -1,0 +1,459 @@
+//! Quad meshes.
+
+use crate::error::{Error, ErrorKind, Stage};
+use crate::features::FeatureReport;
+use crate::finding::Elements;
+use crate::integer::GridReport;
+use crate::options::{GridSize, IntegerMapOptions, QuadOptions, ShapeOptions};
+use crate::report::{Distortion, SurfaceReport, VERSION};
+use crate::surface::Surface;
+#[cfg(feature = "io")]
+use crate::words::counted;
+use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
+use seamstress_quads::quality::Orientation;
+use seamstress_quads::{
+    self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
+    MendOptions, QuadConnectivity, QuadFaults, SmoothOptions, manifold_quads,
+};
+use seamstress_quantize::{IntegerCertificate, IntegerStats};
+use serde::Serialize;
+use std::collections::BTreeMap;
+#[cfg(feature = "io")]
+use std::{io, path::Path};
+
+/// A mesh of quads extracted from an integer-grid map, and where it comes from.
+#[derive(Debug, Clone)]
+pub struct QuadMesh {
+    surface: Surface,
+    extraction: Extraction,
+    irregular: Vec<IrregularVertex>,
+    report: QuadMeshReport,
+}
+
+/// How quads were made, and what they are.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct QuadMeshReport {
+    /// The version that made them.
+    pub seamstress: &'static str,
+    /// The options they were made with; none for those of a map that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub options: Option<QuadOptions>,
+    /// The surface.
+    pub input: SurfaceReport,
+    /// The grid asked for and the one made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridReport>,
+    /// Distortion of the integer-grid map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distortion: Option<Distortion>,
+    /// What was checked of its whole numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integer_certificate: Option<IntegerCertificate>,
+    /// How it was made, component by component.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub components: Option<Vec<IntegerStats>>,
+    /// The map that the quads were extracted from.
+    pub map: ExtractedMap,
+    /// The features asked for and what became of them.
+    pub features: Option<FeatureReport>,
+    /// Coarser grids whose quads were no manifold.
+    pub manifold_refinements: usize,
+    /// The quads.
+    pub quads: QuadReport,
+    /// What untangling moved.
+    pub mended: Option<Untangled>,
+    /// How the quads lie to the surface.
+    pub orientation: Option<Orientation>,
+}
+
+/// The map that quads were extracted from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ExtractedMap {
+    /// Its area in grid units.
+    pub uv_area: f64,
+    /// How far it was from exactness.
+    pub snapping: Snapping,
+    /// Its cones that are vertices of the quads.
+    pub cones: Vec<QuadCone>,
+    /// What was done where it folds.
+    pub folds: Option<Folds>,
+}
+
+/// Quads in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct QuadReport {
+    /// Quads.
+    pub count: usize,
+    /// Vertices.
+    pub vertices: usize,
+    /// Cells that the boundary cuts, left out.
+    pub trimmed: usize,
+    /// Copies made of vertices at which quads met in a point only.
+    pub split_vertices: usize,
+    /// Whether they are an oriented manifold.
+    pub is_manifold: bool,
+    /// Numbers of a manifold.
+    #[serde(flatten)]
+    pub topology: Option<QuadTopology>,
+    /// Why they are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faults: Option<QuadFaults>,
+}
+
+/// The topology of a manifold of quads.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct QuadTopology {
+    /// Edges.
+    pub edges: usize,
+    /// Vertices less edges plus quads.
+    pub euler_characteristic: i64,
+    /// Boundary loops.
+    pub boundary_loops: usize,
+    /// Connected pieces.
+    pub components: usize,
+    /// Interior vertices with another number of quads than four.
+    pub irregular: IrregularReport,
+}
+
+/// Irregular vertices.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct IrregularReport {
+    /// How many.
+    pub count: usize,
+    /// How many of each valence.
+    pub by_valence: BTreeMap<i32, usize>,
+    /// Each with its index, 4 less its valence.
+    pub list: Vec<IrregularVertex>,
+}
+
+/// What untangling moved.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Untangled {
+    /// Vertices moved.
+    pub moved: usize,
+    /// The farthest move, mesh units.
+    pub largest_move: f64,
+}
+
+/// How quads are extracted from an integer-grid map that is given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[non_exhaustive]
+pub struct ExtractionOptions {
+    /// What is done to the vertices
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub shape: ShapeOptions,
+
+    /// How far translations, cones and seams may be from exact, in grid units
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
+        default_value_t = Self::default().tolerance))]
+    pub tolerance: f64,
+
+    /// Extract what can be extracted from a map that folds, and write it even if it is no manifold
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub best_effort: bool,
+}
+
+impl Default for ExtractionOptions {
+    fn default() -> Self {
+        let ExtractOptions { tolerance, best_effort, .. } = ExtractOptions::default();
+        Self { shape: ShapeOptions::default(), tolerance, best_effort }
+    }
+}
+
+impl QuadReport {
+    fn new(extraction: &Extraction, connectivity: Result<&QuadConnectivity, &QuadFaults>) -> Self {
+        Self {
+            count: extraction.mesh.quads().len(),
+            vertices: extraction.mesh.positions().len(),
+            trimmed: extraction.trimmed,
+            split_vertices: extraction.split_vertices,
+            is_manifold: connectivity.is_ok(),
+            topology: connectivity.ok().map(|c| QuadTopology {
+                edges: c.n_edges(),
+                euler_characteristic: c.euler_characteristic(),
+                boundary_loops: c.n_boundary_loops(),
+                components: c.connected_quads().1,
+                irregular: IrregularReport::new(c.irregular_vertices()),
+            }),
+            faults: connectivity.err().cloned(),
+        }
+    }
+}
+
+impl IrregularReport {
+    fn new(list: Vec<IrregularVertex>) -> Self {
+        let by_valence = crate::report::counts(list.iter().map(|vertex| 4 - vertex.index));
+        Self { count: list.len(), by_valence, list }
+    }
+}
+
+impl ExtractedMap {
+    fn new(extraction: &Extraction) -> Self {
+        Self {
+            uv_area: extraction.uv_area,
+            snapping: extraction.snapping,
+            cones: extraction.cones.clone(),
+            folds: extraction.folds.clone(),
+        }
+    }
+}
+
+impl QuadMesh {
+    /// The surface that it was made of.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Positions of the vertices, mesh units.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        self.extraction.mesh.positions()
+    }
+
+    /// Vertices of the quads, counter-clockwise as the faces of the surface.
+    pub fn quads(&self) -> &[[u32; 4]] {
+        self.extraction.mesh.quads()
+    }
+
+    /// The point of the surface at which the map has each vertex: a face and barycentric coordinates.
+    pub fn sources(&self) -> &[SurfacePoint] {
+        &self.extraction.sources
+    }
+
+    /// Interior vertices with another number of quads than four, each with its index: 4 less that number.
+    pub fn irregular(&self) -> &[IrregularVertex] {
+        &self.irregular
+    }
+
+    /// How it was made, and what it is.
+    pub fn report(&self) -> &QuadMeshReport {
+        &self.report
+    }
+
+    /// Writes it as OBJ or PLY, by the ending of the name; the file appears when it is complete.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`].
+    #[cfg(feature = "io")]
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        crate::files::write(path, |file| self.write_as(path, file))
+    }
+
+    /// Writes it in the format that a file of this name has: OBJ or PLY.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    #[cfg(feature = "io")]
+    pub fn write_as(&self, name: impl AsRef<Path>, writer: &mut impl io::Write) -> io::Result<()> {
+        let mut comments = vec![format!("Quad mesh by Seamstress {VERSION}")];
+        comments.extend(crate::map::source_line(&self.surface));
+        comments.push(counted(self.quads().len(), "quad"));
+        let (positions, polygons) = (self.positions(), self.quads());
+        let mesh = seamstress_io::Polymesh { positions, polygons, comments: &comments };
+        let format = seamstress_io::Format::from_path(name.as_ref());
+        mesh.write(writer, format.unwrap_or(seamstress_io::Format::Obj))
+    }
+}
+
+impl Surface {
+    /// Makes a mesh of quads: a seamless map, rounded to an integer-grid map whose cells are extracted.
+    ///
+    /// The quads are an oriented manifold; their irregular vertices are the cones of the map. Cells that a boundary
+    /// cuts which is not among the features are left out, and counted.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NoQuads`], [`ErrorKind::NotAManifold`], and those of [`Surface::integer_map`].
+    pub fn quad_mesh(&self, options: &QuadOptions) -> Result<QuadMesh, Error> {
+        options.validate()?;
+        let made = self.context().run(|watcher| {
+            let integer = IntegerMapOptions {
+                size: options.size,
+                map: options.map.clone(),
+                ..IntegerMapOptions::default()
+            };
+            let start = self.make_seamless(&integer, watcher)?;
+            let size = options.size.to_quantize();
+            let made = manifold_quads(self.mesh(), self.positions(), size, |size| {
+                self.make_integer(&start, GridSize::from_quantize(size), &integer, watcher)
+            })
+            .map_err(no_manifold)?;
+            watcher.enter(Stage::Shaping)?;
+            let kept = start.features.as_ref().map_or(&[][..], |features| &features.kept);
+            let mut extraction = made.extraction;
+            let map = ExtractedMap::new(&extraction);
+            let shaped = self.shape(&mut extraction, &options.shape, kept)?;
+            let solution = made.integer;
+            let report = QuadMeshReport {
+                seamstress: VERSION,
+                options: Some(options.clone()),
+                input: self.report().clone(),
+                grid: Some(GridReport::new(options.size, &solution)),
+                distortion: Some(Distortion::from(&solution.distortion)),
+                integer_certificate: Some(solution.map.certificate().clone()),
+                components: Some(solution.components),
+                map,
+                features: start.features.map(|features| features.report),
+                manifold_refinements: made.refinements,
+                quads: QuadReport::new(&extraction, Ok(&made.connectivity)),
+                mended: Some(shaped.0),
+                orientation: Some(shaped.1),
+            };
+            let irregular = made.connectivity.irregular_vertices();
+            Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
+        });
+        made.map_err(|error| error.of(self.input()))
+    }
+
+    /// Extracts the quads of an integer-grid map of this surface, made by any program, in grid units. Vertices on
+    /// the features of `shaping` stay on them when quads are untangled and smoothed.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NoQuads`] where it is no integer-grid map, and [`ErrorKind::NotAManifold`].
+    pub fn extract_quads(
+        &self,
+        uvs: &[[f64; 2]],
+        face_uvs: &[[u32; 3]],
+        features: &crate::Features,
+        options: &ExtractionOptions,
+    ) -> Result<QuadMesh, Error> {
+        let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
+        let made = self.context().run(|watcher| {
+            let asked = self.features(features)?;
+            watcher.enter(Stage::Extraction)?;
+            let settings =
+                ExtractOptions { tolerance: options.tolerance, best_effort: options.best_effort };
+            let extracted = quads::extract(self.mesh(), self.positions(), &corner_uvs, &settings);
+            let mut extraction =
+                extracted.map_err(|cause| self.no_quads(&cause, options.tolerance))?;
+            let connectivity = extraction.mesh.connectivity();
+            if let (Err(faults), false) = (&connectivity, options.best_effort) {
+                return Err(
+                    no_manifold_of(faults).with_hint("`best_effort` writes them all the same")
+                );
+            }
+            let map = ExtractedMap::new(&extraction);
+            // What folds have left holes in is no surface to shape.
+            let shaped = match connectivity.is_ok() && extraction.folds.is_none() {
+                true => Some(self.shape(&mut extraction, &options.shape, asked.edges())?),
+                false => None,
+            };
+            let quads = QuadReport::new(&extraction, connectivity.as_ref());
+            let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
+            let report = QuadMeshReport {
+                seamstress: VERSION,
+                options: None,
+                input: self.report().clone(),
+                grid: None,
+                distortion: None,
+                integer_certificate: None,
+                components: None,
+                map,
+                features: (!features.is_none()).then(|| asked.report().clone()),
+                manifold_refinements: 0,
+                quads,
+                mended: shaped.map(|shaped| shaped.0),
+                orientation: shaped.map(|shaped| shaped.1),
+            };
+            let irregular = irregular.unwrap_or_default();
+            Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
+        });
+        made.map_err(|error| error.of(self.input()))
+    }
+
+    /// Untangles and smooths quads, which must be a manifold; says what moved, and how they lie to the surface.
+    fn shape(
+        &self,
+        extraction: &mut Extraction,
+        options: &ShapeOptions,
+        features: &[[u32; 2]],
+    ) -> Result<(Untangled, Orientation), Error> {
+        let constraints = extraction.constraints(self.mesh(), self.positions(), features);
+        let surface = (self.positions(), self.faces());
+        let failure = |cause: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {cause}"))
+                .at_stage(Some(Stage::Shaping))
+        };
+        let mut untangled = Untangled { moved: 0, largest_move: 0.0 };
+        if !options.raw {
+            let settings =
+                MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
+            let mended = quads::mend(&extraction.mesh, surface, &settings)
+                .map_err(|cause| failure(&cause))?;
+            untangled = Untangled { moved: mended.moved, largest_move: mended.largest_move };
+            extraction.mesh = mended.mesh;
+        }
+        if options.smooth > 0 {
+            let settings = SmoothOptions { rounds: options.smooth, constraints };
+            let smoothed = quads::smooth(&extraction.mesh, surface, &settings);
+            extraction.mesh = smoothed.map_err(|cause| failure(&cause))?.mesh;
+        }
+        let polygons = extraction.mesh.quads().iter().map(<[u32; 4]>::as_slice);
+        let orientation = Orientation::new(extraction.mesh.positions(), polygons, surface)
+            .map_err(|cause| failure(&cause))?;
+        Ok((untangled, orientation))
+    }
+
+    /// Why a map has no quads, with the elements it names.
+    fn no_quads(&self, cause: &ExtractError, tolerance: f64) -> Error {
+        let error = |text: String| {
+            Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {text}"))
+        };
+        match cause {
+            ExtractError::NotInteger(faults) => {
+                let lines = crate::finding::listing_of(&faults.0, LISTED).join("\n  ");
+                let text =
+                    format!("not an integer-grid map to within {tolerance} grid units:\n  {lines}");
+                error(text).with_hint(match faults.is_seamless() {
+                    true => "the map is seamless, but not an integer-grid map; make it one first",
+                    false => "a map of few digits may need a larger `tolerance`",
+                })
+            }
+            ExtractError::Folds { flipped, collapsed } => {
+                let faces = [flipped.as_slice(), collapsed].concat();
+                let text = format!(
+                    "the map folds{}{}",
+                    folded("flipped", flipped),
+                    folded("collapsed", collapsed)
+                );
+                let elements = self.in_input(&Elements { faces, ..Elements::default() });
+                error(text).with_elements(elements).with_hint("`best_effort` extracts what it can")
+            }
+            other => error(other.to_string()),
+        }
+    }
+}
+
+/// Elements of each kind that an error lists.
+const LISTED: usize = 5;
+
+fn folded(what: &str, faces: &[u32]) -> String {
+    let shown: Vec<String> = faces.iter().take(LISTED).map(u32::to_string).collect();
+    match faces.len() {
+        0 => String::new(),
+        1 => format!("\n  1 {what} face: {}", shown.join(", ")),
+        n if n > LISTED => format!("\n  {n} {what} faces: {} ...", shown.join(", ")),
+        n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
+    }
+}
+
+fn no_manifold(cause: ManifoldError<Error>) -> Error {
+    match cause {
+        ManifoldError::Integer(error) => error,
+        ManifoldError::NoManifold(faults) => no_manifold_of(&faults)
+            .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
+        other => Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}")),
+    }
+}
+
+fn no_manifold_of(faults: &QuadFaults) -> Error {
+    Error::new(ErrorKind::NotAManifold, format!("the quads are no manifold: {faults}"))
+        .at_stage(Some(Stage::Extraction))
+}

@@ -1,0 +1,201 @@
+//! The surface, from which everything is made.
+
+use crate::context::Context;
+use crate::error::{Error, ErrorKind, Stage};
+use crate::features::{self, FeatureCurves, Features};
+use crate::finding::{Elements, Finding};
+use crate::inspection::{Inspection, Parts, SurfaceOptions};
+use crate::report::SurfaceReport;
+use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parametrize::{Violation, Violations};
+use std::fmt;
+#[cfg(feature = "io")]
+use std::path::Path;
+use std::sync::Arc;
+
+/// An oriented manifold of triangles with positions. Cheap to clone.
+///
+/// Its faces are the polygons of the input, split into triangles; vertices and faces keep their order, and nothing is
+/// moved. With repairs some may be gone or added: [`Surface::input_vertex`] and [`Surface::input_face`] tell where
+/// each comes from.
+#[derive(Clone)]
+pub struct Surface {
+    inner: Arc<Inner>,
+    context: Context,
+}
+
+struct Inner {
+    parts: Parts,
+    report: SurfaceReport,
+    mesh: TriMesh,
+    metric: Metric,
+}
+
+impl Surface {
+    /// Reads a surface: OBJ, OFF, PLY or STL.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unreadable`] and [`ErrorKind::NotASurface`].
+    #[cfg(feature = "io")]
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(path, &SurfaceOptions::default())
+    }
+
+    /// Reads a surface, with repairs if the options ask for them.
+    ///
+    /// # Errors
+    /// As [`Surface::read`].
+    #[cfg(feature = "io")]
+    pub fn read_with(path: impl AsRef<Path>, options: &SurfaceOptions) -> Result<Self, Error> {
+        Inspection::read(path, options)?.surface()
+    }
+
+    /// Makes a surface of triangles: positions, #V by 3, and vertices counted from 0, #F by 3, counter-clockwise seen
+    /// from outside.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotASurface`], with every fault.
+    pub fn from_triangles(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
+        Self::from_polygons(positions, faces)
+    }
+
+    /// Makes a surface of polygons, which are split into triangles.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotASurface`], with every fault.
+    pub fn from_polygons<P: AsRef<[u32]>>(
+        positions: &[[f64; 3]],
+        polygons: impl IntoIterator<Item = P>,
+    ) -> Result<Self, Error> {
+        Inspection::of_polygons(positions, polygons, &SurfaceOptions::default()).surface()
+    }
+
+    pub(crate) fn new(parts: Parts, report: SurfaceReport) -> Result<Self, Error> {
+        let soup = &parts.soup;
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
+            Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
+        })?;
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let inner = Arc::new(Inner { parts, report, mesh, metric });
+        Ok(Self { inner, context: Context::default() })
+    }
+
+    /// The same surface whose work is watched, limited and spread over threads by a context.
+    pub fn with_context(mut self, context: Context) -> Self {
+        self.context = context;
+        self
+    }
+
+    /// Positions, #V by 3, mesh units.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.inner.parts.soup.positions
+    }
+
+    /// Vertices of the triangles, #F by 3.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.inner.parts.soup.faces
+    }
+
+    /// The file it was read from, as it was named.
+    pub fn input(&self) -> Option<&str> {
+        self.inner.parts.input.as_deref()
+    }
+
+    /// The vertex of the input that a vertex was.
+    pub fn input_vertex(&self, vertex: u32) -> Option<u32> {
+        match &self.inner.parts.vertex_origin {
+            Some(origin) => origin.get(vertex as usize).copied(),
+            None => ((vertex as usize) < self.positions().len()).then_some(vertex),
+        }
+    }
+
+    /// The polygon of the input that a face is of.
+    pub fn input_face(&self, face: u32) -> Option<u32> {
+        self.inner.parts.face_origin.get(face as usize).copied()
+    }
+
+    /// Counts, topology, size, notes, warnings and repairs.
+    pub fn report(&self) -> &SurfaceReport {
+        &self.inner.report
+    }
+
+    /// Finds features and the curves that they form.
+    ///
+    /// # Errors
+    /// [`ErrorKind::BadFeatures`] where a source names what is not an edge, and [`ErrorKind::Unreadable`].
+    pub fn features(&self, features: &Features) -> Result<FeatureCurves, Error> {
+        features::resolve(self, features)
+    }
+
+    pub(crate) fn parts(&self) -> &Parts {
+        &self.inner.parts
+    }
+
+    pub(crate) fn mesh(&self) -> &TriMesh {
+        &self.inner.mesh
+    }
+
+    pub(crate) fn metric(&self) -> &Metric {
+        &self.inner.metric
+    }
+
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
+    }
+
+    /// Elements of this surface as those of its input.
+    pub(crate) fn in_input(&self, elements: &Elements) -> Elements {
+        let vertex = |&v: &u32| self.input_vertex(v);
+        let edge = |&[a, b]: &[u32; 2]| Some([vertex(&a)?, vertex(&b)?]);
+        let mut faces: Vec<u32> =
+            elements.faces.iter().filter_map(|&face| self.input_face(face)).collect();
+        faces.dedup();
+        Elements {
+            vertices: elements.vertices.iter().filter_map(vertex).collect(),
+            edges: elements.edges.iter().filter_map(edge).collect(),
+            faces,
+        }
+    }
+
+    /// Violations as findings, with elements of the input.
+    pub(crate) fn findings(&self, violations: &Violations) -> Vec<Finding> {
+        let finding = |violation: &Violation| {
+            let mut finding = Finding::from(violation);
+            finding.elements = self.in_input(&finding.elements);
+            finding
+        };
+        violations.0.iter().map(finding).collect()
+    }
+
+    /// Corner UVs, three a face, of UVs and the three of each face.
+    pub(crate) fn corner_uvs(
+        &self,
+        uvs: &[[f64; 2]],
+        face_uvs: &[[u32; 3]],
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let error = |text: String| {
+            Err(Error::new(ErrorKind::NotAMap, text).at_stage(Some(Stage::Certificate)))
+        };
+        if face_uvs.len() != self.faces().len() {
+            let (found, expected) = (face_uvs.len(), self.faces().len());
+            return error(format!("UVs for {found} faces; the surface has {expected}"));
+        }
+        let corners = face_uvs.as_flattened();
+        match corners.iter().position(|&corner| corner as usize >= uvs.len()) {
+            None => Ok(corners.iter().map(|&corner| uvs[corner as usize]).collect()),
+            Some(at) => {
+                error(format!("face {} names UV {}; there are {}", at / 3, corners[at], uvs.len()))
+            }
+        }
+    }
+}
+
+impl fmt::Debug for Surface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Surface")
+            .field("input", &self.input())
+            .field("vertices", &self.positions().len())
+            .field("faces", &self.faces().len())
+            .finish_non_exhaustive()
+    }
+}
