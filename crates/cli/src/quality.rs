@@ -1,7 +1,6 @@
 //! `seamstress quality`.
 
 use crate::args::{QuadFigure, QualityArgs};
-use crate::input::LoadedMesh;
 use crate::measure::{TITLES, line, summary_line};
 use crate::outcome::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
@@ -11,20 +10,13 @@ use crate::shape::orientation_row;
 use crate::summary;
 use crate::text::{self, counted, figure, row};
 use seamstress_io::{PolygonMesh, read_mesh};
-use seamstress_mesh::soup;
 use seamstress_quads::quality::{
-    Distance, Orientation, QuadQuality, SurfaceDistance, angle_deviations, measure,
-    surface_distance,
+    self, Comparison, ComparisonError, Distance, QuadQuality, SurfaceDistance, angle_deviations,
+    measure,
 };
 use seamstress_render::HeatMap;
 use std::io::Write;
 use std::path::Path;
-
-/// How a mesh lies to its source.
-struct Compared {
-    distance: SurfaceDistance,
-    orientation: Orientation,
-}
 
 /// Runs the command.
 pub(crate) fn run(args: &QualityArgs) -> Result<Status, Failure> {
@@ -58,19 +50,14 @@ fn bad_mesh(file: &Path, text: &str) -> Failure {
     Failure::BadMesh { file: file.to_owned(), text: text.to_owned() }
 }
 
-fn compare(args: &QualityArgs, read: &PolygonMesh, source: &Path) -> Result<Compared, Failure> {
-    let triangles = soup::triangulate(&read.positions, read.polygons.iter()).map_err(|faults| {
-        let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
-        bad_mesh(&args.quads, &faults.join("; "))
-    })?;
-    let source = LoadedMesh::load(source, false)?;
-    let surface = (read.positions.as_slice(), triangles.faces.as_slice());
-    let reference = (source.soup.positions.as_slice(), source.soup.faces.as_slice());
-    let distance = surface_distance(surface, reference, args.samples as usize)
-        .map_err(|error| bad_mesh(&source.path, &error.to_string()))?;
-    let orientation = Orientation::new(&read.positions, read.polygons.iter(), reference)
-        .map_err(|error| bad_mesh(&source.path, &error.to_string()))?;
-    Ok(Compared { distance, orientation })
+fn compare(args: &QualityArgs, read: &PolygonMesh, source: &Path) -> Result<Comparison, Failure> {
+    let reference = read_mesh(source)?;
+    let mesh = (read.positions.as_slice(), read.polygons.iter());
+    let reference = (reference.positions.as_slice(), reference.polygons.iter());
+    quality::compare(mesh, reference, args.samples as usize).map_err(|error| {
+        let file = if matches!(error, ComparisonError::BadMesh(_)) { &args.quads } else { source };
+        bad_mesh(file, &error.to_string())
+    })
 }
 
 /// The polygons in the colours of the figure asked for, one value each.
@@ -109,7 +96,7 @@ fn angle_heat(read: &PolygonMesh) -> (Vec<f64>, HeatMap) {
     (values, HeatMap { low: 0.0, high: BRIGHT_DEVIATION, title })
 }
 
-fn json_text(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>) -> String {
+fn json_text(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Comparison>) -> String {
     let mut value = serde_json::to_value(quality).unwrap_or_default();
     if let Some(distortion) = &quality.distortion {
         value["distortion"] = report::distortion_json(distortion);
@@ -126,7 +113,7 @@ fn json_text(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compar
     report::to_text(&value)
 }
 
-fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Compared>) -> String {
+fn table(args: &QualityArgs, quality: &QuadQuality, compared: Option<&Comparison>) -> String {
     let mut rows = topology_rows(args, quality);
     rows.extend(shape_rows(quality));
     match (&quality.distortion, &quality.no_layout) {

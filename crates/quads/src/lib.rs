@@ -11,6 +11,7 @@ mod mesh;
 mod pinches;
 pub mod quality;
 pub mod smooth;
+mod split;
 mod surface;
 mod vector;
 

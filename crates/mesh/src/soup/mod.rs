@@ -24,7 +24,7 @@ pub use check::{Report, check};
 pub use facts::{ComponentFacts, Facts};
 pub use fault::{Fault, Severity};
 pub use repair::{Repair, Repaired, repair};
-pub use triangulate::{Triangulation, TriangulationNotes, triangulate};
+pub use triangulate::{Triangulation, TriangulationNotes, polygon_faults, triangulate};
 
 /// The most faces a soup may have: each has three sides and may need three more on the boundary,
 /// all numbered by `u32`.

@@ -97,7 +97,8 @@ impl TriangulationNotes {
     }
 }
 
-fn polygon_faults(n_vertices: usize, polygons: &[&[u32]]) -> Vec<Fault> {
+/// What keeps polygons from being split into triangles, as [`triangulate`] reports it.
+pub fn polygon_faults(n_vertices: usize, polygons: &[&[u32]]) -> Vec<Fault> {
     let n_faces = polygons.iter().map(|polygon| polygon.len().saturating_sub(2)).sum();
     if n_faces > MAX_FACES || polygons.len() > MAX_FACES {
         return vec![Fault::TooManyFaces { n_faces, limit: MAX_FACES }];

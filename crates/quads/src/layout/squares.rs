@@ -1,7 +1,8 @@
 //! Unit squares, placed one after the other.
 
-use super::{LayoutError, QuadLayout, split};
+use super::{LayoutError, QuadLayout};
 use crate::QuadMesh;
+use crate::split::split_quads;
 use seamstress_mesh::{Face, Halfedge, TriMesh};
 use std::collections::VecDeque;
 
@@ -53,7 +54,7 @@ impl Placement {
 /// # Source
 /// Levi 2021, supplement, section 7.
 pub fn lay_out_squares(quads: &QuadMesh) -> Result<QuadLayout, LayoutError> {
-    let faces = split(quads);
+    let faces = split_quads(quads);
     let mesh = TriMesh::from_faces(quads.positions().len(), &faces)?;
     let mut placements: Vec<Option<Placement>> = vec![None; quads.quads().len()];
     let mut right = 0;

@@ -1,10 +1,13 @@
-//! Quality of quad meshes, section 2 of the seed: shape, irregular vertices, distance to a source.
+//! Quality of quad meshes: shape, irregular vertices, distance to a source (Levi 2021, suppl. sec. 2).
 
+mod comparison;
 mod distance;
 mod orientation;
 mod shape;
 mod topology;
 
+pub use crate::split::split_polygons;
+pub use comparison::{Comparison, ComparisonError, compare};
 pub use distance::{Distance, DistanceError, SurfaceDistance, surface_distance};
 pub use orientation::{BadSurface, Orientation};
 pub use shape::{Angles, EdgeLengths, angle_deviations};
@@ -15,7 +18,7 @@ use crate::layout::{LayoutError, lay_out_squares};
 use seamstress_mesh::Metric;
 use seamstress_parametrize::quality::{Distortion, SingularValues, Summary, measure_all};
 
-/// Figures of a polygon mesh, quads above all.
+/// Metrics of a polygon mesh, quads above all. They do not depend on the corner a polygon is listed from.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct QuadQuality {

@@ -1,5 +1,6 @@
 //! Which way polygons face.
 
+use crate::split::listed_from_smallest;
 use crate::surface::Surface;
 use crate::vector::{Point, add, cross, dot, sub, unit, vector_area};
 use rayon::prelude::*;
@@ -41,6 +42,7 @@ impl Orientation {
         let normals: Vec<Point> = positions.par_iter().map(|&p| surface.normal(p)).collect();
         let mut found = Self::default();
         for polygon in polygons {
+            let polygon = listed_from_smallest(polygon);
             let at = |of: &[Point]| polygon.iter().map(|&v| of[v as usize]).collect::<Vec<_>>();
             let one = Self::of_polygon(&at(positions), &at(&normals));
             found.inverted += one.inverted;

@@ -1,5 +1,6 @@
 //! Shape of polygons: angles and edge lengths.
 
+use crate::split::corner_positions;
 use crate::vector::{cross, dot, norm, sub, unit, vector_area};
 use std::collections::BTreeSet;
 
@@ -45,8 +46,7 @@ impl Angles {
         };
         let mut corners = 0usize;
         for polygon in polygons {
-            let points: Vec<[f64; 3]> = polygon.iter().map(|&v| positions[v as usize]).collect();
-            let of_polygon = polygon_angles(&points);
+            let of_polygon = polygon_angles(&corner_positions(positions, polygon));
             angles.degenerate += usize::from(of_polygon.iter().any(Option::is_none));
             angles.not_convex += usize::from(of_polygon.iter().flatten().any(|&a| a > 180.0));
             for a in of_polygon.into_iter().flatten() {
@@ -69,7 +69,7 @@ pub fn angle_deviations<'a>(
     polygons: impl Iterator<Item = &'a [u32]>,
 ) -> Vec<f64> {
     let deviation = |polygon: &[u32]| {
-        let points: Vec<[f64; 3]> = polygon.iter().map(|&v| positions[v as usize]).collect();
+        let points = corner_positions(positions, polygon);
         let regular = 180.0 - 360.0 / points.len() as f64;
         let angles = polygon_angles(&points).into_iter();
         angles.map(|a| a.map(|a| (a - regular).abs())).try_fold(0.0, |m: f64, a| Some(m.max(a?)))

@@ -14,9 +14,8 @@ use seamstress_bench::maps::seamless;
 use seamstress_bench::markdown::Table;
 use seamstress_bench::meshes::{self, Mesh};
 use seamstress_bench::process::exit_code;
-use seamstress_mesh::soup;
 use seamstress_quads::quality::{
-    Angles, EdgeLengths, Orientation, SurfaceDistance, surface_distance,
+    Angles, EdgeLengths, Orientation, SurfaceDistance, split_polygons, surface_distance,
 };
 use seamstress_quads::{
     Constraints, MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth,
@@ -188,9 +187,9 @@ fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<
     if inverted > 0 {
         faults.push(format!("{inverted} quads are inverted"));
     }
-    let triangles = soup::triangulate(quads.positions(), polygons())
+    let triangles = split_polygons(quads.positions(), polygons())
         .map_err(|_| "the quads cannot be split into triangles")?;
-    let halves = (quads.positions(), triangles.faces.as_slice());
+    let halves = (quads.positions(), triangles.as_slice());
     Ok(Row {
         asked,
         quads: quads.quads().len(),
