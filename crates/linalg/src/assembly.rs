@@ -2,7 +2,7 @@
 
 use crate::buckets::Buckets;
 use crate::pattern::{Pattern, PatternBuilder};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// Where the entries of local blocks go: elements with a few unknowns each, coupled all with all.
 ///

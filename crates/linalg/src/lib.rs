@@ -1,7 +1,8 @@
 //! Sparse linear algebra for Seamstress: orderings, patterns and Cholesky factorisations.
 //!
 //! A few ideas, one file each:
-//! * [`ordering`]: nested dissection of a graph (METIS), so that factors stay sparse;
+//! * [`ordering`]: elimination orders of a graph, by nested dissection (METIS, feature `metis`) or minimum
+//!   degree, so that factors stay sparse;
 //! * [`pattern`]: a symmetric sparsity pattern that is built once and filled many times;
 //! * [`buckets`]: ids grouped by a key;
 //! * [`assembly`]: sums of small dense blocks into such a pattern;

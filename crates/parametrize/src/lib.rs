@@ -27,11 +27,11 @@ pub use layout::conic::Solver;
 pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
-#[doc(hidden)]
-pub use pipeline::{followed, in_component};
 pub use pipeline::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, Relayout,
     RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap, lay_out_disk,
     make_aligned_map, make_field_map, make_map, make_map_from, relayout,
 };
+#[doc(hidden)]
+pub use pipeline::{followed, in_component};
 pub use progress::{Observer, Progress, Stage};

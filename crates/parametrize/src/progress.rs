@@ -1,7 +1,7 @@
 //! Progress and cancellation of long work.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
+use web_time::Instant;
 
 /// The stages of making a map, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]

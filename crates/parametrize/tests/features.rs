@@ -7,6 +7,7 @@ use common::{mesh_of, surface, unwatched};
 use seamstress_mesh::features::{EdgeFinder, EdgeSet, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
+use seamstress_parallel::with_threads;
 use seamstress_parametrize::cut::MatchedCut;
 use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
 use seamstress_parametrize::{
@@ -226,8 +227,8 @@ fn the_same_bytes_on_one_and_two_threads() {
     let soup = kit::bumpy(&kit::subdivide(&kit::subdivide(&kit::l_bracket())), 0.02, 4);
     let features = of_pairs(&soup, &creases(&soup), false);
     let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| aligned_with(&soup, &features, &MapOptions::default()).unwrap())
+        let map = || aligned_with(&soup, &features, &MapOptions::default()).unwrap();
+        with_threads(threads, map).unwrap()
     };
     let (one, two) = (run(1), run(2));
     assert_eq!(one.map.corner_uvs(), two.map.corner_uvs());

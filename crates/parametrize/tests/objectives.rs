@@ -46,7 +46,7 @@ fn every_objective_lowers_its_measure_and_keeps_the_cones() {
         let map = start(&soup);
         let (mesh, metric) = surface(&soup);
         let connected = mesh.connected_faces().1 == 1;
-        for objective in Objective::ALL {
+        for objective in Objective::ALL.into_iter().filter(|objective| objective.is_available()) {
             let result = laid_out(&soup, &map, objective);
             let found = checker::check(&soup.faces, result.map.corner_uvs()).unwrap();
             let cones: Vec<_> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
@@ -104,7 +104,7 @@ fn a_developable_disk_is_unrolled_by_every_objective() {
     }
     let mesh = mesh_of(&soup);
     let mut go_on = |_| ControlFlow::Continue(());
-    for objective in Objective::ALL {
+    for objective in Objective::ALL.into_iter().filter(|objective| objective.is_available()) {
         let options = RelayoutOptions::new(objective);
         let result = lay_out_disk(&mesh, &soup.positions, &options, &mut go_on).unwrap();
         assert!(result.map.seams().is_empty() && result.map.cones().is_empty());

@@ -8,6 +8,7 @@ use common::{mapped, mapped_with, mesh_of};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use seamstress_mesh::soup::TriangleSoup;
+use seamstress_parallel::with_threads;
 use seamstress_parametrize::map::Cone;
 use seamstress_parametrize::{MapOptions, MapSolution, make_map};
 use seamstress_testkit as kit;
@@ -152,11 +153,11 @@ fn powers_of_two_change_no_digit() {
 }
 
 fn mapped_on(threads: usize, soup: &TriangleSoup) -> (Vec<[u64; 2]>, Vec<Cone>) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let solution = pool.install(|| {
+    let solution = with_threads(threads, || {
         let mut go_on = |_| ControlFlow::Continue(());
         make_map(&mesh_of(soup), &soup.positions, &MapOptions::default(), &mut go_on).unwrap()
     });
+    let solution = solution.unwrap();
     let bits = solution.map.corner_uvs().iter().map(|p| p.map(f64::to_bits)).collect();
     (bits, solution.map.cones().to_vec())
 }

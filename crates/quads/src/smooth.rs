@@ -6,7 +6,7 @@ use crate::quality::Orientation;
 use crate::surface::Surface;
 use crate::vector::{Point, add};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// How to smooth.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::features::sharp_edges;
+use seamstress_parallel::with_threads;
 use seamstress_quads::extract::MapFault;
 use seamstress_quads::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, extract};
 use seamstress_testkit::{
@@ -294,8 +295,7 @@ fn folds_are_refused_by_name_and_worked_around_on_request() {
 fn threads_leave_no_trace() {
     let map = squares(&slab_with_holes(2), 4).subdivided().with_random_points(8);
     let all = extracted(&map);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    assert_eq!(pool.install(|| extracted(&map)), all);
+    assert_eq!(with_threads(1, || extracted(&map)).unwrap(), all);
 }
 
 fn random_map(genus: u32, n: u32, seed: u64) -> IntegerMap {

@@ -28,7 +28,7 @@ use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::triangle::triangles;
 use seamstress_parametrize::map::SeamlessMap;
 use seamstress_parametrize::progress::Watch;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Connections of cones shorter than this are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;

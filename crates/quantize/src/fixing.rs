@@ -2,7 +2,7 @@
 
 use super::conditional::{Conditional, Effect, Row, apply};
 use super::rounding::{Constraint, RoundingProblem, Span};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// Values tried for a connection, the cheapest first.
 const TRIED: usize = 8;

@@ -1,8 +1,8 @@
 //! The energy as a function of the integral coordinates alone.
 
 use super::space::IntegerSpace;
-use rayon::prelude::*;
 use seamstress_linalg::NotPositiveDefinite;
+use seamstress_parallel::prelude::*;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 
 /// Right-hand sides that one pass over the factor serves.

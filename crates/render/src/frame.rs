@@ -1,6 +1,6 @@
 //! The loop over bands of rows, and the average from samples to pixels.
 
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 use crate::image::to_srgb8;
 use crate::raster::{Band, Window};

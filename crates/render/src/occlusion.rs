@@ -3,7 +3,7 @@
 //! The surface is seen from far away along many axes. A point is open towards a direction if
 //! nothing lies beyond it on the map of depths of that direction.
 
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 use crate::raster::{ScreenPoint, Window};
 use crate::vec3::{Vec3, add, cross, dot, scale, unit};

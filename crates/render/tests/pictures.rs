@@ -1,5 +1,6 @@
 //! What whole pictures must show.
 
+use seamstress_parallel::with_threads;
 use seamstress_render::{
     Image, LayoutOptions, Paint, Palette, Projection, RenderError, Scene, SurfaceOptions, View,
     render_layout, render_surface,
@@ -344,16 +345,16 @@ fn the_number_of_threads_leaves_no_trace() {
     };
     let options =
         SurfaceOptions { size: [150, 170], paint: Paint::plain(), ..SurfaceOptions::default() };
-    let with_threads = |count: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-        pool.install(|| {
+    let on = |count: usize| {
+        let draw = || {
             let layout = render_layout(&square(), &LayoutOptions::default());
             (render_surface(&scene, &options).unwrap(), layout.unwrap())
-        })
+        };
+        with_threads(count, draw).unwrap()
     };
-    let one = with_threads(1);
-    assert_eq!(one, with_threads(2));
-    assert_eq!(one, with_threads(5));
+    let one = on(1);
+    assert_eq!(one, on(2));
+    assert_eq!(one, on(5));
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! How long work is run: progress, cancellation, time limit, threads.
 
 use crate::error::{Error, ErrorKind, Stage};
+use seamstress_parallel::with_threads;
 use seamstress_parametrize::progress::Progress as Step;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Where the work stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,25 +104,13 @@ impl Context {
         })
     }
 
-    #[cfg(feature = "parallel")]
     fn on_threads<T: Send>(
         &self,
         work: impl FnOnce() -> Result<T, Error> + Send,
     ) -> Result<T, Error> {
         let Some(threads) = self.threads else { return work() };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|cause| {
-            Error::new(ErrorKind::Options, format!("cannot start {threads} threads: {cause}"))
-        })?;
-        pool.install(work)
-    }
-
-    #[cfg(not(feature = "parallel"))]
-    fn on_threads<T: Send>(
-        &self,
-        work: impl FnOnce() -> Result<T, Error> + Send,
-    ) -> Result<T, Error> {
-        work()
+        with_threads(threads, work)
+            .map_err(|cause| Error::new(ErrorKind::Options, cause.to_string()))?
     }
 }
 

@@ -5,7 +5,7 @@
 //! `diag(w) - w w' / sum w`.
 
 use super::groups::{FREE, Groups};
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::TriMesh;
 
@@ -44,7 +44,7 @@ impl System {
         }
         let pattern = builder.build();
         let graph = Graph::from_edges(n, edges.into_iter());
-        let order = nested_dissection(&graph);
+        let order = fill_reducing_order(&graph);
         let slot = |a: u32, b: u32| pattern.slot(a, b).unwrap_or(FREE);
         let slots = group
             .chunks_exact(3)

@@ -3,8 +3,8 @@
 use super::Jacobian;
 use crate::cut::Cut;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parallel::prelude::*;
 
 /// Faces per parallel task; sums are taken per task, then in order, so that the number of threads does
 /// not show in the result.
@@ -101,10 +101,11 @@ pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -
         let (e, f, de, df) = (b - a, c - a, db - da, dc - da);
         smallest_positive_root(cross(de, df), cross(e, df) + cross(de, f), cross(e, f))
     };
-    triangles
+    let steps: Vec<f64> = triangles
         .par_chunks(CHUNK)
         .map(|chunk| chunk.iter().map(step).fold(f64::INFINITY, f64::min))
-        .reduce(|| f64::INFINITY, f64::min)
+        .collect();
+    steps.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Smallest positive root of `a t^2 + b t + c`.

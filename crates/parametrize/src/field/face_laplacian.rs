@@ -1,6 +1,6 @@
 //! Least squares over the angles of faces, coupled across edges.
 
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
 use seamstress_mesh::{Halfedge, TriMesh};
 
@@ -27,7 +27,7 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
         let pattern = builder.build();
         let graph = Graph::from_edges(mesh.n_faces(), faces.iter().map(|&[f, g]| (f, g)));
         let cholesky =
-            Cholesky::analyze_for(Kernel::Simplicial, &pattern, &nested_dissection(&graph))?;
+            Cholesky::analyze_for(Kernel::Simplicial, &pattern, &fill_reducing_order(&graph))?;
         let values = vec![T::default(); pattern.len()];
         Ok(Self { faces, pattern, values, cholesky })
     }

@@ -4,8 +4,8 @@ use super::problem::LayoutProblem;
 use crate::energy::Triangle;
 use crate::quarter::direction;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use seamstress_linalg::NotPositiveDefinite;
+use seamstress_parallel::prelude::*;
 
 const SHIFT: f64 = 1e-10;
 const REFINEMENTS: usize = 2;

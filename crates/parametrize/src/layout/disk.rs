@@ -1,7 +1,7 @@
 //! A first layout of a disk: inside a circle, every vertex the mean of its neighbours (Tutte 1963).
 
 use num_complex::Complex64;
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, TriMesh, Vertex};
 use std::f64::consts::TAU;
@@ -28,7 +28,7 @@ pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, NotP
     mesh.edges().for_each(|h| builder.add_clique(&ends(h).map(|v| v.0)));
     let pattern = builder.build();
     let edges: Vec<_> = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect();
-    let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
+    let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
     let mut cholesky = Cholesky::<f64>::analyze_for(Kernel::Simplicial, &pattern, &order)?;
     // Boundary vertices keep rows of their own, `z = z`.
     let mut matrix = vec![0.0; pattern.len()];

@@ -5,7 +5,8 @@ use super::exact::ExactLayout;
 use super::newton::NewtonOptions;
 use super::window::Window;
 use crate::progress::{Cancelled, Watch};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Settings of the finish.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,10 +7,10 @@ use super::space::LinearSpace;
 use crate::cut::Cut;
 use crate::energy::{CHUNK, Energy, ProjectedHessian, Triangle, at_corner, sum_over, triangles};
 use num_complex::Complex64;
-use rayon::prelude::*;
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parallel::prelude::*;
 use std::ops::Range;
 
 /// Triangles over a linear space, with everything that is prepared once: element maps, assembly,
@@ -433,6 +433,6 @@ fn order_by_nodes(nodes: &[u32], elements: &[Vec<u32>]) -> Vec<u32> {
     });
     let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
     let unknowns = Buckets::new(n_nodes, nodes);
-    let order = nested_dissection(&Graph::from_edges(n_nodes, edges));
+    let order = fill_reducing_order(&Graph::from_edges(n_nodes, edges));
     order.iter().flat_map(|&node| unknowns.of(node as usize).iter().copied()).collect()
 }

@@ -5,8 +5,8 @@ use crate::cut::{Cut, SeamGraph};
 pub use crate::cut::{regauge, turned_vertices};
 use crate::quarter::{turn, unit};
 use num_complex::Complex64;
-use rayon::prelude::*;
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex};
+use seamstress_parallel::prelude::*;
 use std::collections::BTreeMap;
 
 /// `z = N y`: the two coordinates of every wedge as sparse real functions of the unknowns `y`.

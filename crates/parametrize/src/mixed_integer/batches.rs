@@ -7,7 +7,7 @@ use crate::cut::{MatchedCut, frames_of_angles, unfold};
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 use seamstress_mesh::{Metric, TriMesh};
-use std::time::Instant;
+use web_time::Instant;
 
 /// Distances to integers closer than this are the same, quarters.
 const SAME: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Branch and bound, depth first, with dives that decide many integers at a time.
 
 use crate::progress::{Cancelled, Watch};
-use std::time::Instant;
+use web_time::Instant;
 
 /// A program in which some integers are decided and the others are free.
 pub(super) trait Relax {

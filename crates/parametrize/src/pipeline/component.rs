@@ -17,7 +17,7 @@ use crate::rounding::RoundingStrategy;
 use num_complex::Complex64;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Halfedge, Metric, TriMesh, VertexData};
-use std::time::Instant;
+use web_time::Instant;
 
 /// Exponents of the metrics to solve in: the mesh's own, then snowflakes for meshes whose triangles are
 /// too thin for arithmetic.

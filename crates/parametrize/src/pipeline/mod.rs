@@ -26,8 +26,8 @@ use crate::progress::{Cancelled, Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use crate::rounding::RoundingOptions;
 use component::map_component;
-pub use parts::{followed, in_component};
 use parts::{Outcome, Whole};
+pub use parts::{followed, in_component};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Face, Metric, TriMesh, Vertex, components};
 

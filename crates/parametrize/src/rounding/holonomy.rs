@@ -2,10 +2,10 @@
 
 use crate::cut::MatchedCut;
 use crate::features::Sectors;
-use rayon::prelude::*;
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, Vertex};
+use seamstress_parallel::prelude::*;
 use std::collections::VecDeque;
 
 /// Weights of dual edges are inverse cotangent sums, these kept in this range.
@@ -150,7 +150,7 @@ impl Projector {
             .collect();
         let pattern = dual_pattern(nodes, sides.iter().copied());
         let pairs = sides.iter().map(|&[f, g]| (f, g));
-        let order = nested_dissection(&Graph::from_edges(nodes, pairs));
+        let order = fill_reducing_order(&Graph::from_edges(nodes, pairs));
         let mut matrix = vec![0.0; pattern.len()];
         for &k in pattern.diagonal() {
             matrix[k as usize] = 1e-10;

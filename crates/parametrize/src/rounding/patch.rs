@@ -2,9 +2,9 @@
 
 use super::surrogate::edge_weight;
 use crate::features::Sectors;
-use rayon::prelude::*;
 use seamstress_linalg::dense::solve_spd;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, Vertex, VertexData};
+use seamstress_parallel::prelude::*;
 use std::collections::BTreeMap;
 
 /// Rings around an edge that make its patch.

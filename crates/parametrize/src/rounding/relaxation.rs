@@ -5,9 +5,9 @@ use crate::cut::{Cut, MatchedCut};
 use crate::features::Sectors;
 use crate::quarter::{direction, unit};
 use num_complex::Complex64;
-use rayon::prelude::*;
 use seamstress_linalg::{Buckets, NotPositiveDefinite};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// Weight of the rows that hold a rounded edge; the rigidity energy has weights of order one.

@@ -1,10 +1,10 @@
 //! What a set of cones costs, without laying anything out.
 
 use crate::features::Sectors;
-use rayon::prelude::*;
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// Estimate of the excess distortion of the best map with given cones.
@@ -58,7 +58,7 @@ impl<'a> Surrogate<'a> {
         mesh.edges().for_each(|h| builder.add_clique(&ends(h)));
         let pattern = builder.build();
         let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
-        let order = nested_dissection(&Graph::from_edges(n, edges.into_iter()));
+        let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
         let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         let cotangent = metric.cotangent();
         let area = metric.vertex_area(mesh);

@@ -1,7 +1,7 @@
 //! The linear system of the relaxation.
 
 use num_complex::Complex64;
-use seamstress_linalg::ordering::{Graph, expand, nested_dissection};
+use seamstress_linalg::ordering::{Graph, expand, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
 
 /// Shift of the diagonal; the rows have weights of order one and more.
@@ -36,7 +36,7 @@ impl System {
     ) -> Result<Self, NotPositiveDefinite> {
         let pairs =
             |w: &'a [u32]| (0..w.len()).flat_map(move |i| (0..i).map(move |j| (w[j], w[i])));
-        let order = nested_dissection(&Graph::from_edges(n, cliques.clone().flat_map(pairs)));
+        let order = fill_reducing_order(&Graph::from_edges(n, cliques.clone().flat_map(pairs)));
         if !real {
             return Form::new(n, cliques.map(<[u32]>::to_vec), &order).map(Self::Complex);
         }

@@ -6,8 +6,8 @@ use super::pieces::Pieces;
 use super::points::{GridPoints, Site};
 use super::snap::GridMap;
 use super::winding::degrees;
-use rayon::prelude::*;
 use seamstress_mesh::{Face, TriMesh};
+use seamstress_parallel::prelude::*;
 
 const NONE: u32 = u32::MAX;
 /// Faces looked at by one task.

@@ -4,8 +4,8 @@ use super::fixed::Transition;
 use super::pieces::Pieces;
 use super::snap::GridMap;
 use super::sweep::{cells_in_row, rows};
-use rayon::prelude::*;
 use seamstress_mesh::{Halfedge, TriMesh};
+use seamstress_parallel::prelude::*;
 
 /// The connected parts of the preimages of open cells.
 pub(super) struct Patches {

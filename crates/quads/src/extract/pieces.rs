@@ -4,8 +4,8 @@ use super::error::ExtractError;
 use super::fixed::{Point, Unit};
 use super::snap::GridMap;
 use super::sweep::{cells_in_row, rows};
-use rayon::prelude::*;
 use seamstress_mesh::{Face, TriMesh};
+use seamstress_parallel::prelude::*;
 use std::ops::Range;
 
 /// The most pieces; some gigabytes are needed for as many.

@@ -3,8 +3,8 @@
 use super::fixed::Point;
 use super::snap::GridMap;
 use super::sweep::{points_between, points_inside};
-use rayon::prelude::*;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
+use seamstress_parallel::prelude::*;
 
 const NONE: u32 = u32::MAX;
 

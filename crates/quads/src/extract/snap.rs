@@ -2,8 +2,8 @@
 
 use super::error::{ExtractError, MapFault, MapFaults};
 use super::fixed::{LARGEST_COORDINATE, Point, Transition, Unit, turned};
-use rayon::prelude::*;
 use seamstress_mesh::{Complex64, Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
+use seamstress_parallel::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// How far the numbers were from exactness, and what was done about it. Grid units.
@@ -75,7 +75,8 @@ pub(super) fn snap(
         let placed = unit.to_f64(corner);
         (placed[0] - uv[0]).abs().max((placed[1] - uv[1]).abs())
     });
-    let largest_change = changes.reduce(|| 0.0, f64::max);
+    let changes: Vec<f64> = changes.collect();
+    let largest_change = changes.into_iter().fold(0.0, f64::max);
     let snapping = Snapping { largest_change, ..edges.snapping };
     Ok(GridMap { unit, corners, transitions: edges.transitions, indices, snapping })
 }

@@ -3,8 +3,8 @@
 use super::patches::Patches;
 use super::pieces::Pieces;
 use super::snap::GridMap;
-use rayon::prelude::*;
 use seamstress_mesh::{Face, TriMesh};
+use seamstress_parallel::prelude::*;
 
 /// The degree of every patch: sheets that keep the orientation, less those that turn it over.
 ///

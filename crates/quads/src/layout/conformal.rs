@@ -3,7 +3,7 @@
 use super::{LayoutError, QuadLayout, lay_out_squares};
 use crate::QuadMesh;
 use num_complex::Complex64;
-use seamstress_linalg::ordering::{Graph, nested_dissection};
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Pattern, PatternBuilder};
 use seamstress_mesh::Halfedge;
 use seamstress_parametrize::cut::Cut;
@@ -89,7 +89,7 @@ impl System {
         let edges = unknowns.iter().flat_map(|clique| {
             (0..clique.len()).flat_map(move |i| (0..i).map(move |j| (clique[i], clique[j])))
         });
-        let order = nested_dissection(&Graph::from_edges(n, edges));
+        let order = fill_reducing_order(&Graph::from_edges(n, edges));
         Self { faces, pattern: builder.build(), order }
     }
 

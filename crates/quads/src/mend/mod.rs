@@ -8,7 +8,7 @@ use crate::smooth::SmoothError;
 use crate::surface::{Surface, distance_to_triangle};
 use crate::vector::{Point, add, cross, dot, norm, scale, sub, unit};
 use crate::{QuadConnectivity, QuadMesh};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 use std::collections::BTreeSet;
 
 /// What to mend.

@@ -4,7 +4,7 @@ use super::{POWER, Phase, State, phases};
 use crate::badness;
 use crate::quality::Orientation;
 use crate::vector::{Point, add, scale};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 use std::collections::BTreeSet;
 
 /// Where quads that nothing else helped start over.

@@ -3,7 +3,7 @@
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::TriMesh as Bvh;
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// Distances from points of one surface to another surface.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

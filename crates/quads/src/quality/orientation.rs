@@ -3,7 +3,7 @@
 use crate::split::listed_from_smallest;
 use crate::surface::Surface;
 use crate::vector::{Point, add, cross, dot, sub, unit, vector_area};
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// How polygons lie to the surface they stand for.
 ///

@@ -1,14 +1,13 @@
 //! Bounded dilatation by bisection over the bound (Lipman 2012), to compare eq. (12) with.
 
+use super::general::{Cone, End, run};
 use super::objective::ConicObjective;
 use super::program::Program;
-use super::reference::{End, run};
 use super::rows::{Row, Rows, part_rows};
 use super::solver::{ConicSolution, Outcome, Solver};
 use super::{ConicOptions, Run};
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
-use clarabel::solver::{SecondOrderConeT, ZeroConeT};
 
 /// Bisection ends when the bounds on K differ by less than this part.
 const BRACKET: f64 = 1e-3;
@@ -63,14 +62,14 @@ fn bounded(
         rows.push(&along.times(k).plus(&Row::of(n, 1.0)), 0.0);
         rows.push(&w0, 0.0);
         rows.push(&w1, 0.0);
-        cones.push(SecondOrderConeT(3));
+        cones.push(Cone::SecondOrder(3));
     }
     rows.push(&Row::dense(&mean), -1.0);
-    cones.push(ZeroConeT(1));
+    cones.push(Cone::Zero(1));
     let mut cost = vec![0.0; n + 1];
     cost[n] = 1.0;
     let (x, End { gap, iterations, outcome }) =
-        run(&rows.into_csc(), &cost, &cones, &options.program);
+        run(rows.into_columns(), &cost, &cones, &options.program);
     ConicSolution {
         y: x[..n].to_vec(),
         objective: x[n],

@@ -7,6 +7,7 @@ mod cone;
 mod descent;
 mod element;
 mod fused;
+mod general;
 pub mod interior_point;
 mod objective;
 mod passes;
@@ -65,6 +66,9 @@ pub enum ConicError {
         /// The first such triangle.
         triangle: usize,
     },
+    /// Clarabel is asked for, and this build is without it.
+    #[error("the solver Clarabel is not part of this build (feature `clarabel`)")]
+    NoReferenceSolver,
     /// The anisotropic frames are not one matrix of positive determinant per triangle.
     #[error(
         "the anisotropic frame of triangle {triangle} is missing or has no positive determinant"
@@ -115,6 +119,11 @@ pub fn minimize(
     options: &ConicOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<ConicMinimum, ConicError> {
+    let needs_reference =
+        options.solver == Solver::Clarabel || objective == ConicObjective::DilatationBisection;
+    if needs_reference && !Solver::Clarabel.is_available() {
+        return Err(ConicError::NoReferenceSolver);
+    }
     let left = inverses(problem, options)?;
     let left = left.as_deref();
     let descent = Descent::new(problem, objective, left, y);

@@ -6,7 +6,7 @@ use crate::layout::problem::LayoutProblem;
 use crate::layout::triangle::Triangle;
 use crate::quarter::direction;
 use num_complex::Complex64;
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// What is minimised, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]

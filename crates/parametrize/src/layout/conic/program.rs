@@ -4,7 +4,7 @@ use crate::layout::energy::Jacobian;
 use crate::layout::problem::LayoutProblem;
 use crate::layout::triangle::{CHUNK, Triangle};
 use num_complex::Complex64;
-use rayon::prelude::*;
+use seamstress_parallel::prelude::*;
 
 /// A real 2 x 2 matrix by rows.
 pub type Matrix2 = [[f64; 2]; 2];
@@ -76,14 +76,15 @@ pub(in crate::layout) fn extremes(
 ) -> (f64, f64) {
     let none = (f64::NEG_INFINITY, f64::INFINITY);
     let join = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.min(b.1));
-    triangles
+    let of_chunks: Vec<(f64, f64)> = triangles
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(c, chunk)| {
             let each = chunk.iter().enumerate().map(|(k, t)| figures(c * CHUNK + k, t));
             each.fold(none, join)
         })
-        .reduce(|| none, join)
+        .collect();
+    of_chunks.into_iter().fold(none, join)
 }
 
 /// `A J`.

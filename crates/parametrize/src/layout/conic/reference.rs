@@ -1,14 +1,11 @@
 //! The same programs by Clarabel, a general conic solver.
 
+use super::general::{Cone, run};
 use super::program::{Matrix2, Program, ProgramKind};
 use super::rows::{Row, Rows, part_rows};
-use super::solver::{ConicSolution, Outcome, Solver, SolverOptions};
+use super::solver::{ConicSolution, Solver, SolverOptions};
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, SecondOrderConeT, SolverStatus, SupportedConeT,
-};
 
 /// Solves a program to the tolerance in gap and feasibility; needs no start.
 ///
@@ -32,7 +29,7 @@ pub fn solve(
     };
     let mut cost = vec![0.0; rows.columns()];
     cost[n] = 1.0;
-    let (x, end) = run(&rows.into_csc(), &cost, &cones, options);
+    let (x, end) = run(rows.into_columns(), &cost, &cones, options);
     watch.pulse()?;
     let y = x[..n].to_vec();
     Ok(ConicSolution {
@@ -52,7 +49,7 @@ fn scale_and_left(program: &Program, t: usize) -> (f64, Option<&Matrix2>) {
 }
 
 /// `(s; z)`, `(mu - s; w)`, `(Re(z conj R) - 1; w)` per triangle.
-fn stretch(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<SupportedConeT<f64>>) {
+fn stretch(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<Cone>) {
     let (n, triangles) = (problem.space().n_unknowns(), problem.triangles());
     let mut rows = Rows::new(n + 1 + triangles.len());
     for (t, triangle) in triangles.iter().enumerate() {
@@ -76,11 +73,11 @@ fn stretch(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<SupportedCo
             rows.push(row, constant);
         }
     }
-    (rows, vec![SecondOrderConeT(3); 3 * triangles.len()])
+    (rows, vec![Cone::SecondOrder(3); 3 * triangles.len()])
 }
 
 /// `(m; z - R, w)` per triangle.
-fn deviation(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<SupportedConeT<f64>>) {
+fn deviation(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<Cone>) {
     let (n, triangles) = (problem.space().n_unknowns(), problem.triangles());
     let mut rows = Rows::new(n + 1);
     for (t, triangle) in triangles.iter().enumerate() {
@@ -93,51 +90,5 @@ fn deviation(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<Supported
         rows.push(&w0, 0.0);
         rows.push(&w1, 0.0);
     }
-    (rows, vec![SecondOrderConeT(5); triangles.len()])
-}
-
-/// How Clarabel ended.
-pub(super) struct End {
-    pub(super) gap: f64,
-    pub(super) iterations: usize,
-    pub(super) outcome: Outcome,
-}
-
-/// Minimises `cost . x` with `A x + b` in the cones, one thread.
-pub(super) fn run(
-    (matrix, constants): &(CscMatrix<f64>, Vec<f64>),
-    cost: &[f64],
-    cones: &[SupportedConeT<f64>],
-    options: &SolverOptions,
-) -> (Vec<f64>, End) {
-    let settings = DefaultSettings::<f64> {
-        verbose: false,
-        max_iter: options.max_iterations as u32,
-        tol_gap_abs: options.tolerance,
-        tol_gap_rel: options.tolerance,
-        tol_feas: options.tolerance,
-        max_threads: 1,
-        ..DefaultSettings::default()
-    };
-    let n = cost.len();
-    let failed = End { gap: f64::NAN, iterations: 0, outcome: Outcome::ReferenceFailed };
-    let quadratic = CscMatrix::<f64>::zeros((n, n));
-    let Ok(mut solver) = DefaultSolver::new(&quadratic, cost, matrix, constants, cones, settings)
-    else {
-        return (vec![0.0; n], failed);
-    };
-    solver.solve();
-    let outcome = match solver.solution.status {
-        SolverStatus::Solved => Outcome::Solved,
-        SolverStatus::MaxIterations => Outcome::IterationLimit,
-        SolverStatus::InsufficientProgress => Outcome::Stalled,
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-            Outcome::Infeasible
-        }
-        _ => Outcome::ReferenceFailed,
-    };
-    let (primal, dual) = (solver.solution.obj_val, solver.solution.obj_val_dual);
-    let gap = (primal - dual).abs() / primal.abs().max(1e-12);
-    let iterations = solver.solution.iterations as usize;
-    (solver.solution.x, End { gap, iterations, outcome })
+    (rows, vec![Cone::SecondOrder(5); triangles.len()])
 }

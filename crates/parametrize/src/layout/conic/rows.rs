@@ -4,7 +4,6 @@ use super::element::vector_back;
 use super::program::Matrix2;
 use crate::layout::space::LinearSpace;
 use crate::layout::triangle::Triangle;
-use clarabel::algebra::CscMatrix;
 
 /// A linear form, columns ascending.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +72,15 @@ pub(super) fn part_rows(
     })
 }
 
+/// A matrix by columns: entries of column `j` are `starts[j]..starts[j + 1]`, rows ascending.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Columns {
+    pub(super) n_rows: usize,
+    pub(super) starts: Vec<usize>,
+    pub(super) rows: Vec<usize>,
+    pub(super) values: Vec<f64>,
+}
+
 /// Rows of `A x + b`, in Clarabel's sign convention once compressed.
 pub(super) struct Rows {
     columns: usize,
@@ -97,7 +105,7 @@ impl Rows {
     }
 
     /// The matrix `-A` by columns and `b`: Clarabel asks for `b - (-A) x` in the cones.
-    pub(super) fn into_csc(self) -> (CscMatrix<f64>, Vec<f64>) {
+    pub(super) fn into_columns(self) -> (Columns, Vec<f64>) {
         let mut starts = vec![0usize; self.columns + 1];
         for &(column, _) in &self.entries {
             starts[column as usize + 1] += 1;
@@ -106,17 +114,16 @@ impl Rows {
             starts[k + 1] += starts[k];
         }
         let mut fill = starts.clone();
-        let mut row_ids = vec![0usize; self.entries.len()];
+        let mut rows = vec![0usize; self.entries.len()];
         let mut values = vec![0.0; self.entries.len()];
         for (row, ends) in self.offsets.windows(2).enumerate() {
             for &(column, x) in &self.entries[ends[0]..ends[1]] {
                 let at = &mut fill[column as usize];
-                (row_ids[*at], values[*at]) = (row, -x);
+                (rows[*at], values[*at]) = (row, -x);
                 *at += 1;
             }
         }
-        let matrix = CscMatrix::new(self.constants.len(), self.columns, starts, row_ids, values);
-        (matrix, self.constants)
+        (Columns { n_rows: self.constants.len(), starts, rows, values }, self.constants)
     }
 }
 
@@ -131,10 +138,10 @@ mod tests {
         let mut rows = Rows::new(3);
         rows.push(&row, 7.0);
         rows.push(&Row::of(0, 5.0), 0.0);
-        let (matrix, constants) = rows.into_csc();
+        let (matrix, constants) = rows.into_columns();
         assert_eq!(constants, [7.0, 0.0]);
-        assert_eq!(matrix.colptr, [0, 2, 2, 3]);
-        assert_eq!(matrix.rowval, [0, 1, 0]);
-        assert_eq!(matrix.nzval, [-3.0, -5.0, 3.0]);
+        assert_eq!(matrix.starts, [0, 2, 2, 3]);
+        assert_eq!(matrix.rows, [0, 1, 0]);
+        assert_eq!(matrix.values, [-3.0, -5.0, 3.0]);
     }
 }

@@ -17,6 +17,16 @@ pub enum Solver {
     Clarabel,
 }
 
+impl Solver {
+    /// Whether this build has the solver: Clarabel is the feature `clarabel`.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Own => true,
+            Self::Clarabel => cfg!(feature = "clarabel"),
+        }
+    }
+}
+
 /// When a solver stops.
 #[derive(Debug, Clone, Copy)]
 pub struct SolverOptions {
@@ -51,6 +61,8 @@ pub enum Outcome {
     Infeasible,
     /// The reference solver ended otherwise.
     ReferenceFailed,
+    /// The reference solver is not part of this build (feature `clarabel`).
+    ReferenceUnavailable,
 }
 
 /// A layout that solves a program, or the best one reached.
@@ -73,7 +85,7 @@ pub struct ConicSolution {
     pub fallback_from: Option<Outcome>,
 }
 
-/// Solves a program from a layout; Clarabel takes over where the own solver fails.
+/// Solves a program from a layout; Clarabel, if it is part of the build, takes over where the own solver fails.
 ///
 /// The own solver starts at `y`, which must satisfy the program's constraints (for some bound); a flip-free
 /// layout with its own frames does. Clarabel needs no start.
@@ -92,7 +104,7 @@ pub fn solve(
         return reference::solve(problem, program, options, watch);
     }
     let own = interior_point::solve(problem, program, y, Renewal::Never, options, watch)?;
-    if own.outcome == Outcome::Solved {
+    if own.outcome == Outcome::Solved || !Solver::Clarabel.is_available() {
         return Ok(own);
     }
     let other = reference::solve(problem, program, options, watch)?;

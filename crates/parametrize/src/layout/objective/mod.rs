@@ -45,6 +45,11 @@ pub enum Objective {
 }
 
 impl Objective {
+    /// Whether this build can minimise it: the bisection needs the feature `clarabel`.
+    pub fn is_available(self) -> bool {
+        self != Self::DilatationBisection || Solver::Clarabel.is_available()
+    }
+
     /// All of them.
     pub const ALL: [Self; 11] = [
         Self::SymmetricDirichlet,

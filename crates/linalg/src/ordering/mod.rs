@@ -1,7 +1,12 @@
 //! Fill-reducing orderings.
 
+#[cfg(feature = "metis")]
+mod metis;
+mod minimum_degree;
+
+pub use minimum_degree::minimum_degree;
+
 use crate::buckets::Buckets;
-use std::sync::Mutex;
 
 /// Undirected graph in compressed form: the neighbours of node `i` are
 /// `neighbours[offsets[i]..offsets[i + 1]]`, each edge listed at both ends, no loops.
@@ -47,44 +52,20 @@ impl Graph {
     }
 }
 
-/// METIS keeps its random state in the C library, so calls take turns; each call seeds it anew,
-/// which makes the result a function of the graph alone.
-static METIS: Mutex<()> = Mutex::new(());
-
-/// Elimination order by nested dissection: entry `k` is the node eliminated `k`-th.
+/// Elimination order that keeps factors sparse: entry `k` is the node eliminated `k`-th. It depends on the
+/// graph alone.
 ///
-/// Falls back to the given order when METIS declines (it does for graphs without edges).
-pub fn nested_dissection(graph: &Graph) -> Vec<u32> {
-    let n = graph.len();
-    if n <= 2 || graph.neighbours.is_empty() {
-        return (0..n as u32).collect();
+/// By nested dissection (METIS), whose factors are sparser on surfaces; by [`minimum_degree`] without the
+/// feature `metis`, or if METIS declines.
+pub fn fill_reducing_order(graph: &Graph) -> Vec<u32> {
+    if graph.len() <= 2 || graph.neighbours.is_empty() {
+        return (0..graph.len() as u32).collect();
     }
-    let _turn = METIS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let mut nodes = n as i32;
-    let mut offsets = graph.offsets.clone();
-    let mut neighbours = graph.neighbours.clone();
-    let mut order = vec![0i32; n];
-    let mut position = vec![0i32; n];
-    let mut options = vec![0i32; metis_sys::METIS_NOPTIONS as usize];
-    // SAFETY: all pointers are to live buffers of the sizes METIS asks for (n + 1 offsets, n
-    // entries in the two permutations, METIS_NOPTIONS options); it keeps none of them.
-    let status = unsafe {
-        metis_sys::METIS_SetDefaultOptions(options.as_mut_ptr());
-        metis_sys::METIS_NodeND(
-            &mut nodes,
-            offsets.as_mut_ptr(),
-            neighbours.as_mut_ptr(),
-            std::ptr::null_mut(),
-            options.as_mut_ptr(),
-            order.as_mut_ptr(),
-            position.as_mut_ptr(),
-        )
-    };
-    if status == metis_sys::rstatus_et_METIS_OK {
-        order.into_iter().map(|x| x as u32).collect()
-    } else {
-        (0..n as u32).collect()
+    #[cfg(feature = "metis")]
+    if let Some(order) = metis::nested_dissection(graph) {
+        return order;
     }
+    minimum_degree(graph)
 }
 
 /// Repeats an order of nodes for `block` unknowns per node: node `i` owns unknowns
@@ -111,13 +92,48 @@ mod tests {
     }
 
     #[test]
-    fn order_is_a_permutation_and_repeatable() {
+    fn orders_are_permutations_and_repeatable() {
         let graph = grid(20);
-        let order = nested_dissection(&graph);
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        assert_eq!(sorted, (0..400).collect::<Vec<_>>());
-        assert_eq!(order, nested_dissection(&graph));
+        for method in [fill_reducing_order, minimum_degree] {
+            let order = method(&graph);
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert_eq!(sorted, (0..400).collect::<Vec<_>>());
+            assert_eq!(order, method(&graph));
+        }
+    }
+
+    /// Entries below the diagonal of a factor whose unknowns are eliminated in this order.
+    fn fill(graph: &Graph, order: &[u32]) -> usize {
+        let n = graph.len();
+        let mut place = vec![0; n];
+        order.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k);
+        let mut later: Vec<std::collections::BTreeSet<usize>> = vec![Default::default(); n];
+        for node in 0..n {
+            let range = graph.offsets[node] as usize..graph.offsets[node + 1] as usize;
+            let ends = graph.neighbours[range].iter().map(|&m| place[m as usize]);
+            later[place[node]] = ends.filter(|&end| end > place[node]).collect();
+        }
+        for k in 0..n {
+            let column = later[k].clone();
+            if let Some(&parent) = column.first() {
+                later[parent].extend(column.into_iter().filter(|&row| row > parent));
+            }
+        }
+        later.iter().map(|column| column.len()).sum()
+    }
+
+    #[test]
+    fn orders_keep_factors_sparse() {
+        let star = Graph::from_edges(4, [(0, 1), (0, 2), (0, 3)].into_iter());
+        assert_eq!([fill(&star, &[0, 1, 2, 3]), fill(&star, &[1, 2, 3, 0])], [6, 3]);
+        let graph = grid(30);
+        let given: Vec<u32> = (0..900).collect();
+        let banded = fill(&graph, &given);
+        for method in [fill_reducing_order, minimum_degree] {
+            let sparse = fill(&graph, &method(&graph));
+            assert!(2 * sparse < banded, "{sparse} of {banded}");
+        }
     }
 
     #[test]
@@ -129,7 +145,9 @@ mod tests {
 
     #[test]
     fn tiny_graphs_keep_their_order() {
-        assert_eq!(nested_dissection(&Graph::from_edges(3, [].into_iter())), [0, 1, 2]);
+        let loose = Graph::from_edges(3, [].into_iter());
+        assert_eq!(fill_reducing_order(&loose), [0, 1, 2]);
+        assert_eq!(minimum_degree(&Graph::from_edges(1, [].into_iter())), [0]);
         assert_eq!(expand(&[1, 0], 2), [2, 3, 0, 1]);
     }
 }
