@@ -1,10 +1,15 @@
 //! Measurements of Seamstress: what the command `seamstress-bench` runs.
 
-pub mod compare;
-pub mod jobs;
-pub mod maps;
-pub mod markdown;
-pub mod meshes;
+mod compare;
+mod jobs;
+mod machine;
+mod map_files;
+mod markdown;
+pub mod measurements;
+mod meshes;
 pub mod output;
 pub mod process;
-pub mod program;
+mod program;
+pub mod results;
+mod statistics;
+mod verify;

@@ -1,22 +1,29 @@
 //! Markdown tables that can be read as they are.
 
+use crate::output::progress;
 use std::fmt;
 
 /// A table; the first column is aligned left, the others right.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
     /// A table without rows.
-    pub fn new<T: Into<String>>(titles: impl IntoIterator<Item = T>) -> Self {
+    pub(crate) fn new<T: Into<String>>(titles: impl IntoIterator<Item = T>) -> Self {
         let titles = titles.into_iter().map(Into::into).collect();
         Self { rows: vec![titles] }
     }
 
+    /// Appends a row, and shows it as progress.
+    pub(crate) fn report(&mut self, cells: Vec<String>) {
+        progress(&format!("| {} |", cells.join(" | ")));
+        self.push(cells);
+    }
+
     /// Appends a row.
-    pub fn push(&mut self, cells: Vec<String>) {
+    pub(crate) fn push(&mut self, cells: Vec<String>) {
         self.rows.push(cells.iter().map(|cell| escape(cell)).collect());
     }
 }
@@ -53,7 +60,7 @@ impl fmt::Display for Table {
 }
 
 /// Text that ends no cell and no line.
-pub fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 

@@ -1,19 +1,81 @@
-//! What the operating system says about this process, on Linux only, and how it ends.
+//! This process: its time and memory, where the operating system reports them (on Linux), and how it ends.
 
+use crate::output::progress;
 use std::error::Error;
 use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
-/// How a program ends: 0 if all went well, 1 if something measured did not, 2 after an error, which is told on
+/// How a program ends: 0 if all went well, 1 if something measured did not, 2 after an error, which is reported on
 /// standard error.
-#[expect(clippy::print_stderr, reason = "these programs tell their errors there")]
 pub fn exit_code(outcome: Result<bool, Box<dyn Error>>) -> ExitCode {
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("error: {error}");
+            progress(&format!("error: {error}"));
             ExitCode::from(2)
+        }
+    }
+}
+
+/// The program of that name next to this one.
+///
+/// # Errors
+/// If it is not there.
+pub fn sibling(name: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let file = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    let path = std::env::current_exe()?.with_file_name(file);
+    if path.is_file() {
+        return Ok(path);
+    }
+    let hint = "build it with `cargo build --release -p seamstress-cli`";
+    Err(format!("there is no {}; {hint}", path.display()).into())
+}
+
+/// Measures time from its start.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    wall: Instant,
+    cpu: Option<f64>,
+}
+
+/// What something took, in seconds.
+#[derive(Debug, Clone, Copy)]
+pub struct Cost {
+    /// Elapsed time.
+    pub wall: f64,
+    /// Time of the processor, all threads together; not a number where the system does not report it.
+    pub cpu: f64,
+}
+
+impl Clock {
+    /// Starts to measure.
+    pub fn start() -> Self {
+        let cpu = cpu_seconds();
+        Self { wall: Instant::now(), cpu }
+    }
+
+    /// The time since the start.
+    pub fn cost(&self) -> Cost {
+        let cpu = self.cpu.zip(cpu_seconds()).map_or(f64::NAN, |(before, after)| after - before);
+        Cost { wall: self.wall.elapsed().as_secs_f64(), cpu }
+    }
+
+    /// Seconds of the processor since the start, or elapsed ones where the system does not report them.
+    pub fn seconds(&self) -> f64 {
+        let cost = self.cost();
+        if cost.cpu.is_nan() { cost.wall } else { cost.cpu }
+    }
+
+    /// An observer of a computation that ends it when the time is up.
+    pub fn limit<E>(&self, limit: Option<Duration>) -> impl FnMut(E) -> ControlFlow<()> + use<E> {
+        let start = self.wall;
+        move |_| match limit {
+            Some(limit) if start.elapsed() > limit => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
         }
     }
 }

@@ -7,18 +7,18 @@ use std::process::{Command, Output};
 
 /// A `seamstress` program and the arguments that every run gets.
 #[derive(Debug, Clone)]
-pub struct Program {
+pub(crate) struct Program {
     /// The executable.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Seconds after which a run gives up.
-    pub time_limit: Option<u32>,
+    pub(crate) time_limit: Option<u32>,
     /// Number of threads; all cores if not given.
-    pub threads: Option<u16>,
+    pub(crate) threads: Option<u16>,
 }
 
 /// How a run ended.
 #[derive(Debug, Clone)]
-pub enum Outcome {
+pub(crate) enum Outcome {
     /// With a result, and its report.
     Done(Report),
     /// The input is at fault; the reason.
@@ -29,7 +29,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// The report, if there is a result.
-    pub fn report(&self) -> Option<&Report> {
+    pub(crate) fn report(&self) -> Option<&Report> {
         match self {
             Self::Done(report) => Some(report),
             _ => None,
@@ -39,7 +39,7 @@ impl Outcome {
 
 impl Program {
     /// Runs `COMMAND MESH -o OUTPUT ARGUMENTS` with a JSON report.
-    pub fn run<A: AsRef<OsStr>>(
+    pub(crate) fn run<A: AsRef<OsStr>>(
         &self,
         command: &str,
         mesh: &Path,
@@ -89,24 +89,24 @@ fn reason(mesh: &Path, output: &Output) -> String {
 
 /// The JSON report of a run.
 #[derive(Debug, Clone)]
-pub struct Report(Value);
+pub(crate) struct Report(Value);
 
 impl Report {
     /// Reads a report.
     ///
     /// # Errors
     /// If it is not JSON.
-    pub fn parse(json: &[u8]) -> Result<Self, serde_json::Error> {
+    pub(crate) fn parse(json: &[u8]) -> Result<Self, serde_json::Error> {
         serde_json::from_slice(json).map(Self)
     }
 
     /// A value by its JSON pointer, as in `/input/faces`; null if there is none.
-    pub fn get(&self, pointer: &str) -> &Value {
+    pub(crate) fn get(&self, pointer: &str) -> &Value {
         self.0.pointer(pointer).unwrap_or(&Value::Null)
     }
 
     /// A number by its JSON pointer; infinities are spelled out in reports.
-    pub fn number(&self, pointer: &str) -> Option<f64> {
+    pub(crate) fn number(&self, pointer: &str) -> Option<f64> {
         match self.get(pointer) {
             Value::String(text) => text.parse().ok(),
             value => value.as_f64(),
@@ -114,7 +114,7 @@ impl Report {
     }
 
     /// CPU seconds of the whole run.
-    pub fn cpu_seconds(&self) -> Option<f64> {
+    pub(crate) fn cpu_seconds(&self) -> Option<f64> {
         self.number("/cost/cpu_seconds")
     }
 }

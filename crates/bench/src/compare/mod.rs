@@ -5,35 +5,33 @@ mod summary;
 
 use crate::jobs;
 use crate::markdown::Table;
-use crate::meshes::{self, name};
-use crate::output::{progress, publish};
+use crate::meshes::{Selection, name};
+use crate::output::{Section, progress};
 use crate::program::{Outcome, Program};
 use clap::value_parser;
 use metric::{MAP_METRICS, Metric, QUAD_METRICS};
 use std::error::Error;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use summary::summary;
 
-/// Compare two builds of `seamstress` on the same meshes
+/// Comparison: two builds or settings of `seamstress` on the same meshes
 ///
-/// Maps every mesh with both builds, and makes its quads too if `--quads` is given. Each cell shows
-/// `old -> new`, or one value where both agree. A summary counts the meshes that are lost (the old build
-/// succeeds, the new one does not), gained, and worse by more than a percentage. The exit code is 0 if no mesh is
-/// lost, 1 if one is, 2 if there is no table.
+/// Maps every mesh with both, and makes its quads too if `--quads` is given. Each cell shows `old -> new`, or one
+/// value where both agree. A summary counts the meshes that are lost (the old one succeeds, the new one does not),
+/// gained, and worse by more than a percentage. It counts as a failure if a mesh is lost.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The `seamstress` to compare with
+    /// The `seamstress` executable to compare with
     old: PathBuf,
 
-    /// The `seamstress` to judge
+    /// The `seamstress` executable to judge
     new: PathBuf,
 
-    /// Mesh files, or folders of them without their subfolders
-    #[arg(required = true)]
-    meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    selection: Selection,
 
     /// Compare the quad meshes for this count as well
     #[arg(long, value_name = "N")]
@@ -42,10 +40,6 @@ pub struct Args {
     /// Count a mesh as worse if a metric is worse by more than this
     #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
     worse: f64,
-
-    /// Take only the files whose name contains one of these
-    #[arg(long, value_name = "TEXT", value_delimiter = ',')]
-    only: Vec<String>,
 
     /// Meshes at the same time
     #[arg(long, default_value_t = 1, value_parser = value_parser!(u16).range(1..=256))]
@@ -59,15 +53,19 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", value_parser = value_parser!(u32).range(1..))]
     time_limit: Option<u32>,
 
-    /// Write the table to this file as well
-    #[arg(long, value_name = "TABLE.md")]
-    out: Option<PathBuf>,
-
     /// Keep the results in the folders `old` and `new` of this one
     #[arg(long, value_name = "DIR")]
     keep: Option<PathBuf>,
 
-    /// More arguments for both commands
+    /// An argument for the old one alone; may be repeated
+    #[arg(long, value_name = "ARG", allow_hyphen_values = true)]
+    old_args: Vec<OsString>,
+
+    /// An argument for the new one alone; may be repeated
+    #[arg(long, value_name = "ARG", allow_hyphen_values = true)]
+    new_args: Vec<OsString>,
+
+    /// More arguments for both
     #[arg(last = true, value_name = "ARGS")]
     arguments: Vec<OsString>,
 }
@@ -108,27 +106,17 @@ struct Pair {
     is_same: bool,
 }
 
-/// Runs the comparison; whether nothing was lost.
-///
-/// # Errors
-/// If a program or the meshes are missing, or a file cannot be written.
-pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
-    let mut paths = Vec::new();
-    for path in &args.meshes {
-        if path.is_dir() {
-            paths.extend(meshes::list(path, None)?);
-        } else {
-            paths.push(path.clone());
-        }
-    }
-    paths.retain(|path| args.only.is_empty() || args.only.iter().any(|t| name(path).contains(t)));
+/// Compares; passes if nothing was lost.
+pub(crate) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
+    let paths = args.selection.paths()?;
     let temporary = tempfile::tempdir()?;
     let folder = args.keep.as_deref().unwrap_or(temporary.path());
-    let builds = [("old", &args.old), ("new", &args.new)];
-    let [old, new] = builds.map(|(side, path)| Build::new(path, folder.join(side), args));
+    let builds = [("old", &args.old, &args.old_args), ("new", &args.new, &args.new_args)];
+    let [old, new] =
+        builds.map(|(side, path, own)| Build::new(path, folder.join(side), own.clone(), args));
     let (old, new) = (old?, new?);
-    let mut text = format!("old: {}\nnew: {}\n", old.version, new.version);
-    let mut nothing_lost = true;
+    let mut text = format!("* old: {}\n* new: {}\n", old.label, new.label);
+    let mut passed = true;
     for task in Task::list(args) {
         let done = AtomicUsize::new(0);
         let pairs = jobs::map(&paths, args.jobs.into(), |mesh| {
@@ -143,11 +131,10 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         let mut table = Table::new(titles);
         pairs.iter().for_each(|pair| table.push(pair.cells(&task)));
         let summary = summary(&pairs, task.metrics, args.worse);
-        nothing_lost &= pairs.iter().all(|pair| !pair.is_lost());
-        text += &format!("\n## {}\n\n{table}\n{summary}", task.title);
+        passed &= pairs.iter().all(|pair| !pair.is_lost());
+        text += &format!("\n### {}\n\n{table}\n{summary}", task.title);
     }
-    publish(&text, args.out.as_deref())?;
-    Ok(nothing_lost)
+    Ok(Section { text, passed })
 }
 
 /// One of the two builds.
@@ -155,26 +142,35 @@ struct Build {
     program: Program,
     /// Where its results go.
     folder: PathBuf,
-    /// The path and what `--version` prints.
-    version: String,
+    /// Its own arguments.
+    arguments: Vec<OsString>,
+    /// What `--version` prints and its own arguments.
+    label: String,
 }
 
 impl Build {
-    fn new(path: &Path, folder: PathBuf, args: &Args) -> Result<Self, Box<dyn Error>> {
+    fn new(
+        path: &Path,
+        folder: PathBuf,
+        arguments: Vec<OsString>,
+        args: &Args,
+    ) -> Result<Self, Box<dyn Error>> {
         let output = std::process::Command::new(path).arg("--version").output();
         let output = output.map_err(|e| format!("cannot run {}: {e}", path.display()))?;
         let version = String::from_utf8_lossy(&output.stdout);
-        let version = format!("{} ({})", path.display(), version.trim());
+        let own = arguments.join(OsStr::new(" "));
+        let label = format!("{} {}", version.trim(), own.to_string_lossy()).trim().to_owned();
         fs::create_dir_all(&folder)?;
         let threads = Some(args.threads);
         let program = Program { path: path.to_owned(), time_limit: args.time_limit, threads };
-        Ok(Self { program, folder, version })
+        Ok(Self { program, folder, arguments, label })
     }
 
     fn run(&self, mesh: &Path, task: &Task) -> (Outcome, PathBuf) {
         // The whole file name stays, since files may differ in their extensions only.
         let output = self.folder.join(format!("{}.{}.obj", name(mesh), task.command));
-        let outcome = self.program.run(task.command, mesh, &output, &task.arguments);
+        let arguments = [task.arguments.as_slice(), &self.arguments].concat();
+        let outcome = self.program.run(task.command, mesh, &output, &arguments);
         (outcome, output)
     }
 }

@@ -1,15 +1,9 @@
 //! The cost and quality of consistent matchings.
 
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the table and its progress are what this program is for"
-)]
-
-use clap::Parser;
-use seamstress_bench::markdown::Table;
-use seamstress_bench::meshes::{self, Mesh};
-use seamstress_bench::process::cpu_seconds;
+use crate::markdown::Table;
+use crate::meshes::{Mesh, Selection};
+use crate::output::Section;
+use crate::process::Clock;
 use seamstress_mesh::{Metric, TriMesh, components::components};
 use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut,
@@ -21,27 +15,18 @@ use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_testkit::Rng;
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Makes naively rounded matchings of every mesh of a folder consistent
+/// Consistency: the cost and quality of consistent matchings
 ///
 /// Every matching is rounded at once to the integer nearest to the surface's own rotation; all are integer
 /// variables. Columns: vertices whose index no triangles can have at first; cones before and after; CPU
 /// seconds, objective and its lower bound in the l2 norm; CPU seconds and objective in the l1 norm; the
 /// objective of a long local search, if one was asked for, and how much lower it is.
-#[derive(Debug, Parser)]
-struct Args {
-    /// The folder of meshes; its subfolders are left out
-    folder: PathBuf,
-
-    /// Take only the files whose name contains one of these
-    #[arg(long, value_name = "TEXT", num_args = 1..)]
-    only: Vec<String>,
-
-    /// Leave out meshes of more triangles
-    #[arg(long, value_name = "TRIANGLES", default_value_t = usize::MAX)]
-    largest: usize,
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    selection: Selection,
 
     /// Look for better indices for so many seconds: from the best ones with some random matchings changed
     #[arg(long, value_name = "SECONDS")]
@@ -51,8 +36,8 @@ struct Args {
 /// Random matchings that a step of the long search changes, at most.
 const KICKS: usize = 8;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let args = Args::parse();
+/// Makes the matchings of every mesh consistent; passes if that always succeeds.
+pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
     let mut table = Table::new([
         "mesh",
         "triangles",
@@ -67,30 +52,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         "search",
         "lower by",
     ]);
-    for path in meshes::list(&args.folder, None)? {
-        let name = meshes::name(&path);
-        let is_wanted = args.only.is_empty() || args.only.iter().any(|text| name.contains(text));
-        let mesh = match is_wanted.then(|| meshes::load(&path)) {
-            Some(Ok(mesh)) if mesh.connectivity.n_faces() <= args.largest => mesh,
-            Some(Err(error)) => {
-                eprintln!("refused: {error}");
-                continue;
-            }
-            _ => continue,
-        };
-        let mut cells = vec![name, mesh.connectivity.n_faces().to_string()];
-        match measure(&mesh, args.search) {
-            Ok(more) => cells.extend(more),
-            Err(error) => {
-                eprintln!("{}: {error}", cells[0]);
-                cells.extend(["failed"; 10].map(String::from));
-            }
-        }
-        eprintln!("| {} |", cells.join(" | "));
-        table.push(cells);
-    }
-    print!("{table}");
-    Ok(())
+    let failures = args.selection.survey(|subject| {
+        let mut cells = vec![subject.name.clone(), subject.mesh.connectivity.n_faces().to_string()];
+        cells.extend(measure_mesh(&subject.mesh, args.search)?);
+        table.report(cells);
+        Ok(())
+    })?;
+    Ok(Section::new(table, &failures))
 }
 
 /// One component with its naively rounded matchings.
@@ -110,7 +78,7 @@ struct Solved {
     cuts: Vec<MatchedCut>,
 }
 
-fn measure(mesh: &Mesh, search: Option<f64>) -> Result<Vec<String>, ConsistencyError> {
+fn measure_mesh(mesh: &Mesh, search: Option<f64>) -> Result<Vec<String>, ConsistencyError> {
     let pieces: Vec<Piece> = components(&mesh.connectivity)
         .unwrap_or_default()
         .into_iter()
@@ -170,7 +138,7 @@ impl Piece {
 
 fn solve(pieces: &[Piece], norm: AngleNorm) -> Result<Solved, ConsistencyError> {
     let mut all = Solved::default();
-    let start = cpu_seconds().unwrap_or_default();
+    let clock = Clock::start();
     for piece in pieces {
         let (cut, found) = piece.consistent(&piece.naive, norm)?;
         all.objective += found.objective;
@@ -178,11 +146,11 @@ fn solve(pieces: &[Piece], norm: AngleNorm) -> Result<Solved, ConsistencyError> 
         all.impossible += found.stats.impossible_units;
         all.cuts.push(cut);
     }
-    all.seconds = cpu_seconds().unwrap_or_default() - start;
+    all.seconds = clock.seconds();
     Ok(all)
 }
 
-/// The least sum of squares that solves from changed matchings find, all pieces together; the time is
+/// The lowest sum of squares that solves from changed matchings find, all pieces together; the time is
 /// shared by their faces.
 fn searched(pieces: &[Piece], first: &Solved, seconds: f64) -> Result<f64, ConsistencyError> {
     let faces: usize = pieces.iter().map(|piece| piece.mesh.n_faces()).sum();
@@ -193,7 +161,7 @@ fn searched(pieces: &[Piece], first: &Solved, seconds: f64) -> Result<f64, Consi
         let limit = Duration::try_from_secs_f64(share).unwrap_or(Duration::ZERO);
         let begun = Instant::now();
         let (mut best, found) = piece.consistent(start, AngleNorm::L2)?;
-        let mut least = found.objective;
+        let mut lowest = found.objective;
         while begun.elapsed() < limit && !best.matching.is_empty() {
             let mut kicked = best.clone();
             for _ in 0..=rng.below(KICKS) {
@@ -201,11 +169,11 @@ fn searched(pieces: &[Piece], first: &Solved, seconds: f64) -> Result<f64, Consi
                 kicked.matching[seam] += if rng.unit() < 0.5 { 1 } else { -1 };
             }
             let (cut, found) = piece.consistent(&kicked, AngleNorm::L2)?;
-            if found.objective < least {
-                (best, least) = (cut, found.objective);
+            if found.objective < lowest {
+                (best, lowest) = (cut, found.objective);
             }
         }
-        total += least;
+        total += lowest;
     }
     Ok(total)
 }

@@ -1,4 +1,4 @@
-//! Seamless maps of meshes, made once and kept.
+//! Files of maps and of the meshes they belong to.
 
 use crate::meshes::Mesh;
 use seamstress_io::{MapObj, read_mesh, write_map_obj};
@@ -17,7 +17,7 @@ use std::time::Instant;
 ///
 /// # Errors
 /// If there is no map, or a file cannot be read or written.
-pub fn seamless(
+pub(crate) fn seamless(
     name: &str,
     mesh: &Mesh,
     quads: f64,
@@ -48,9 +48,29 @@ pub fn seamless(
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write_map(path: &Path, mesh: &Mesh, corner_uvs: &[[f64; 2]]) -> Result<(), Box<dyn Error>> {
+pub(crate) fn write_map(
+    path: &Path,
+    mesh: &Mesh,
+    corner_uvs: &[[f64; 2]],
+) -> Result<(), Box<dyn Error>> {
     let mut file = BufWriter::new(File::create(path)?);
     let (positions, faces) = (&mesh.positions, &mesh.faces());
     write_map_obj(&mut file, &MapObj { positions, faces, corner_uvs, comments: &[] })?;
+    Ok(file.flush()?)
+}
+
+/// Writes triangles without UVs, as an OBJ file.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write_mesh(path: &Path, mesh: &Mesh) -> Result<(), Box<dyn Error>> {
+    let mut file = BufWriter::new(File::create(path)?);
+    for [x, y, z] in &mesh.positions {
+        writeln!(file, "v {x} {y} {z}")?;
+    }
+    for face in mesh.faces() {
+        let [a, b, c] = face.map(|v| v + 1);
+        writeln!(file, "f {a} {b} {c}")?;
+    }
     Ok(file.flush()?)
 }

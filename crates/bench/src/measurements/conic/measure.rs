@@ -1,8 +1,8 @@
 //! One program by one solver in this process.
 
-use crate::Choice;
-use crate::input::Input;
-use seamstress_bench::process::{cpu_seconds, forget_peak_memory, memory, peak_memory};
+use super::Choice;
+use super::input::Input;
+use crate::process::{cpu_seconds, forget_peak_memory, memory, peak_memory};
 use seamstress_parametrize::layout::conic::{ConicObjective, Solver, SolverOptions, solve};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::progress::Watch;
@@ -12,25 +12,25 @@ use std::path::Path;
 
 /// What came of it.
 #[derive(Debug)]
-pub(crate) struct Measurement {
-    pub(crate) triangles: usize,
-    pub(crate) objective: f64,
-    pub(crate) iterations: usize,
-    pub(crate) seconds: f64,
-    pub(crate) bytes: f64,
-    pub(crate) outcome: String,
-    pub(crate) solver: String,
+pub(super) struct Measurement {
+    pub(super) triangles: usize,
+    pub(super) objective: f64,
+    pub(super) iterations: usize,
+    pub(super) seconds: f64,
+    pub(super) bytes: f64,
+    pub(super) outcome: String,
+    pub(super) solver: String,
 }
 
 impl Measurement {
     /// As one line for another process.
-    pub(crate) fn to_line(&self) -> String {
+    pub(super) fn to_line(&self) -> String {
         let Self { triangles, objective, iterations, seconds, bytes, outcome, solver } = self;
         format!("{triangles} {objective:e} {iterations} {seconds} {bytes} {outcome} {solver}")
     }
 
     /// From such a line.
-    pub(crate) fn from_line(line: &str) -> Option<Self> {
+    pub(super) fn from_line(line: &str) -> Option<Self> {
         let mut words = line.split(' ');
         let mut next = || words.next();
         Some(Self {
@@ -46,7 +46,7 @@ impl Measurement {
 }
 
 /// Solves the program of a map's own frames and scales.
-pub(crate) fn measure(
+pub(super) fn solve_alone(
     path: &Path,
     program: Choice,
     solver: Solver,

@@ -1,6 +1,6 @@
 //! What must hold of the quads of a map, found from their corners alone.
 
-use seamstress_bench::meshes::Mesh;
+use crate::meshes::Mesh;
 use seamstress_parametrize::SeamlessMap;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -8,15 +8,15 @@ type Edge = (u32, u32);
 
 /// Counts of a quad mesh, from the list of its quads.
 #[derive(Debug, Default)]
-pub(crate) struct Counts {
-    pub(crate) euler_characteristic: i64,
-    pub(crate) boundary_loops: usize,
+pub(super) struct Counts {
+    pub(super) euler_characteristic: i64,
+    pub(super) boundary_loops: usize,
     /// Quads at each vertex that has some and is off the boundary, where there are not four.
-    pub(crate) irregular: BTreeMap<u32, usize>,
+    pub(super) irregular: BTreeMap<u32, usize>,
 }
 
 /// Counts, or the first reason why the quads are no oriented manifold.
-pub(crate) fn count(quads: &[[u32; 4]]) -> Result<Counts, String> {
+pub(super) fn count(quads: &[[u32; 4]]) -> Result<Counts, String> {
     let mut next: HashMap<Edge, usize> = HashMap::new();
     for (q, quad) in quads.iter().enumerate() {
         if (1..4).any(|k| quad[..k].contains(&quad[k])) {
@@ -99,7 +99,7 @@ fn loops(open: &BTreeMap<u32, u32>) -> usize {
 }
 
 /// Twice the area of the map, summed from its triangles, halved.
-pub(crate) fn uv_area(corner_uvs: &[[f64; 2]]) -> f64 {
+pub(super) fn uv_area(corner_uvs: &[[f64; 2]]) -> f64 {
     let twice = corner_uvs.chunks_exact(3).map(|t| {
         let [p, q] = [1, 2].map(|k| [t[k][0] - t[0][0], t[k][1] - t[0][1]]);
         p[0] * q[1] - p[1] * q[0]
@@ -112,7 +112,7 @@ pub(crate) fn uv_area(corner_uvs: &[[f64; 2]]) -> f64 {
 /// A closed mesh must have quads of its own topology, as many as the area of the map, with the irregular
 /// vertices of the map's cones: at the same positions, with `4 - index` quads. An open mesh is trimmed: its
 /// irregular vertices must be cones.
-pub(crate) fn faults(
+pub(super) fn faults(
     mesh: &Mesh,
     map: &SeamlessMap,
     positions: &[[f64; 3]],
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn every_fault_is_told() {
+    fn every_fault_is_found() {
         let (map, quads) = cube();
         let connectivity = TriMesh::from_faces(8, &map.soup.faces).unwrap();
         let tolerance = seamstress_parametrize::Tolerance::default();

@@ -1,19 +1,12 @@
-//! Quad meshes of many meshes at several counts of quads, checked and measured.
-
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the table and its progress are what this program is for"
-)]
+//! Quad meshes at several counts of quads, checked and measured.
 
 mod check;
-mod order;
 
-use clap::Parser;
-use seamstress_bench::maps::seamless;
-use seamstress_bench::markdown::Table;
-use seamstress_bench::meshes::{self, Mesh};
-use seamstress_bench::process::exit_code;
+use crate::map_files::seamless;
+use crate::markdown::Table;
+use crate::meshes::{Mesh, Selection};
+use crate::output::{Section, progress};
+use crate::statistics::order;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, split_polygons, surface_distance,
 };
@@ -22,34 +15,24 @@ use seamstress_quads::{
 };
 use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
 use std::error::Error;
-use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::Instant;
 
-/// Makes quad meshes of every mesh of a folder, checks and measures them
+/// Quad meshes: checked and measured
 ///
-/// Of each, the quads must be an oriented manifold. Those of a closed mesh must have its topology, be as many as
-/// the area of the integer map, and have the map's cones as irregular vertices; those of an open one are trimmed,
-/// and have no other irregular vertices. No quad may be inverted. All this is checked without the code that made
-/// the quads. Exit code 1 if anything fails.
-#[derive(Debug, Parser)]
-struct Args {
-    /// The folder of meshes; its subfolders are left out
-    folder: PathBuf,
+/// Of each mesh, the quads must be an oriented manifold. Those of a closed mesh must have its topology, be as many
+/// as the area of the integer-grid map, and have the map's cones as irregular vertices; those of an open one are
+/// trimmed, and have no other irregular vertices. No quad may be inverted, unless they are `--raw`. All this is checked without the code that
+/// made the quads. Distances are to the source and from it, in per cent of the diagonal of its bounding box.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    selection: Selection,
 
     /// Quads asked for
     #[arg(long, value_delimiter = ',', default_values_t = [500.0, 2500.0])]
     quads: Vec<f64>,
-
-    /// Take only the files whose names contain one of these
-    #[arg(long, value_name = "TEXT", value_delimiter = ',')]
-    only: Vec<String>,
-
-    /// Leave out meshes of more triangles
-    #[arg(long, value_name = "N", default_value_t = 100_000)]
-    most_triangles: usize,
 
     /// Leave the vertices where the map has them, with badly shaped quads as they are
     #[arg(long)]
@@ -66,10 +49,6 @@ struct Args {
     /// Keep the seamless maps in this folder, and take those that are there
     #[arg(long, value_name = "DIR")]
     maps: Option<PathBuf>,
-
-    /// Write the table to this file as well
-    #[arg(long, value_name = "TABLE.md")]
-    out: Option<PathBuf>,
 }
 
 const TITLES: [&str; 13] = [
@@ -81,69 +60,46 @@ const TITLES: [&str; 13] = [
     "irregular",
     "angles",
     "mean off 90",
-    "turned, bent, crossed, inverted",
+    "inverted corners; folded, self-intersecting, inverted quads",
     "edges +-%",
     "Hausdorff %",
     "mean %",
     "check",
 ];
 
-fn main() -> ExitCode {
-    exit_code(run(&Args::parse()))
-}
-
-/// Whether every mesh gave quads that pass every check.
-fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+/// Makes the quads; passes if every mesh gave quads that pass every check.
+pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
     let mut table = Table::new(TITLES);
     let mut orders =
         Table::new(["mesh", "counts", "order of the Hausdorff distance", "of the mean"]);
     let mut failures = Vec::new();
-    for path in meshes::list(&args.folder, None)? {
-        let name = meshes::name(&path);
-        if !(args.only.is_empty() || args.only.iter().any(|text| name.contains(text))) {
-            continue;
-        }
-        let mesh = match meshes::load(&path) {
-            Ok(mesh) if mesh.connectivity.n_faces() <= args.most_triangles => mesh,
-            Ok(_) => continue,
-            Err(error) => {
-                eprintln!("refused: {error}");
-                continue;
-            }
-        };
+    args.selection.survey(|subject| {
         let mut rows = Vec::new();
         for &asked in &args.quads {
-            match measure(&name, &mesh, asked, args) {
+            let place = format!("{} at {asked}", subject.name);
+            match measure_mesh(&subject.name, &subject.mesh, asked, args) {
                 Ok(row) => {
-                    let cells = row.cells(&name, &mesh);
-                    eprintln!("| {} |", cells.join(" | "));
-                    table.push(cells);
-                    let told =
-                        row.faults.iter().map(|fault| format!("* {name} at {asked}: {fault}"));
-                    failures.extend(told);
+                    table.report(row.cells(&subject.name, &subject.mesh));
+                    failures.extend(row.faults.iter().map(|fault| format!("{place}: {fault}")));
                     rows.push(row);
                 }
                 Err(error) => {
-                    eprintln!("{name} at {asked}: {error}");
-                    failures.push(format!("* {name} at {asked}: {error}"));
+                    progress(&format!("{place}: {error}"));
+                    failures.push(format!("{place}: {error}"));
                 }
             }
         }
-        orders.push(order_cells(&name, &rows));
-    }
-    let mut text = format!("{table}\n");
+        orders.push(order_cells(&subject.name, &rows));
+        Ok(())
+    })?;
+    let mut text = table.to_string();
     if args.quads.len() > 1 {
-        text += &format!("{orders}\n");
+        text += &format!("\n{orders}");
     }
-    match failures.as_slice() {
-        [] => text += "Every check passed.\n",
-        _ => text += &format!("Failed:\n\n{}\n", failures.join("\n")),
+    if failures.is_empty() {
+        text += "\nEvery check passed.\n";
     }
-    print!("{text}");
-    if let Some(path) = &args.out {
-        fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-    }
-    Ok(failures.is_empty())
+    Ok(Section::new(text, &failures))
 }
 
 /// The quads of one run, measured.
@@ -159,7 +115,7 @@ struct Row {
     faults: Vec<String>,
 }
 
-fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
+fn measure_mesh(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
     let (map, _) = seamless(name, mesh, asked, args.maps.as_deref())?;
     let (positions, faces) = (mesh.positions.as_slice(), mesh.faces());
     let source = (positions, faces.as_slice());
@@ -177,14 +133,14 @@ fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<
     let constraints = extraction.constraints(&mesh.connectivity, positions, &[]);
     let quads = match args.raw {
         true => extraction.mesh,
-        false => mended(&extraction.mesh, source, &constraints)?,
+        false => untangled(&extraction.mesh, source, &constraints)?,
     };
     let quads = smoothed(quads, source, args.smooth, constraints)?;
 
     let polygons = || quads.quads().iter().map(<[u32; 4]>::as_slice);
     let orientation = Orientation::new(quads.positions(), polygons(), source)?;
     let inverted = orientation.inverted + orientation.crossed;
-    if inverted > 0 {
+    if inverted > 0 && !args.raw {
         faults.push(format!("{inverted} quads are inverted"));
     }
     let triangles = split_polygons(quads.positions(), polygons())
@@ -203,7 +159,7 @@ fn measure(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row, Box<
     })
 }
 
-fn mended(
+fn untangled(
     quads: &QuadMesh,
     source: (&[[f64; 3]], &[[u32; 3]]),
     constraints: &Constraints,
@@ -211,7 +167,8 @@ fn mended(
     let start = Instant::now();
     let options = MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
     let mended = mend(quads, source, &options)?;
-    eprintln!("mended in {:.2} s: {} vertices moved", start.elapsed().as_secs_f64(), mended.moved);
+    let seconds = start.elapsed().as_secs_f64();
+    progress(&format!("untangled in {seconds:.2} s: {} vertices moved", mended.moved));
     Ok(mended.mesh)
 }
 
@@ -227,7 +184,7 @@ fn smoothed(
     let start = Instant::now();
     let options = SmoothOptions { rounds, constraints };
     let smoothed = smooth(&quads, source, &options)?.mesh;
-    eprintln!("smoothed in {:.2} s", start.elapsed().as_secs_f64());
+    progress(&format!("smoothed in {:.2} s", start.elapsed().as_secs_f64()));
     Ok(smoothed)
 }
 
@@ -255,10 +212,10 @@ impl Row {
 }
 
 fn order_cells(name: &str, rows: &[Row]) -> Vec<String> {
-    let slope = |of: fn(&SurfaceDistance) -> f64| {
+    let exponent = |of: fn(&SurfaceDistance) -> f64| {
         let points: Vec<_> = rows.iter().map(|r| (r.lengths.mean, of(&r.distance))).collect();
-        order::slope(&points).map_or("-".into(), |order| format!("{order:.2}"))
+        order(&points).map_or("-".into(), |exponent| format!("{exponent:.2}"))
     };
     let counts: Vec<String> = rows.iter().map(|row| row.quads.to_string()).collect();
-    vec![name.to_owned(), counts.join(", "), slope(|d| d.hausdorff), slope(|d| d.mean)]
+    vec![name.to_owned(), counts.join(", "), exponent(|d| d.hausdorff), exponent(|d| d.mean)]
 }

@@ -1,39 +1,30 @@
-//! Round trips from maps to cross fields and back, on every mesh of a folder.
+//! Round trips from maps to cross fields and back.
 
-use clap::Parser;
-use seamstress_bench::markdown::Table;
-use seamstress_bench::meshes::{Mesh, list, load, name};
-use seamstress_bench::process::cpu_seconds;
+use crate::markdown::Table;
+use crate::meshes::{Mesh, Selection};
+use crate::output::Section;
+use crate::process::Clock;
 use seamstress_mesh::{HalfedgeData, Metric};
 use seamstress_parametrize::field::{CrossField, Homology, extract, lift, map_indices};
 use seamstress_parametrize::{MapOptions, Start, make_map, make_map_from};
 use std::error::Error;
-use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::Instant;
 
-/// Maps each mesh, reads the cross field off the map, maps the field, and compares
+/// Cross fields: round trips from maps to fields and back
 ///
-/// Columns: cones and loops of the first map; whether the second has the same cones, the same loop
-/// indices; its tau against that of the first; milliseconds for the basis of the homology and for the
-/// elimination of eq. (13), with all matchings shaken by full turns first.
-#[derive(Debug, Parser)]
-struct Args {
-    /// Folder with meshes
-    folder: PathBuf,
-
-    /// Only meshes whose name contains this
-    #[arg(long)]
-    only: Option<String>,
-
-    /// Only meshes of at most this many triangles
-    #[arg(long, default_value_t = usize::MAX)]
-    largest: usize,
+/// Maps each mesh, reads the cross field off the map, maps the field, and compares. Columns: cones and loops
+/// of the first map; whether the second has the same cones, the same loop indices; its tau against that of the
+/// first; milliseconds for the basis of the homology and for the elimination of eq. (13), with all matchings
+/// changed by full turns first.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    selection: Selection,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let args = Args::parse();
+/// Makes the round trip of every mesh; passes if there is a map in both directions and cones and loops are kept.
+pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
     let mut table = Table::new([
         "mesh",
         "triangles",
@@ -47,32 +38,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         "(13) ms",
         "CPU s",
     ]);
-    for path in list(&args.folder, args.only.as_deref())? {
-        let mesh = match load(&path) {
-            Ok(mesh) if mesh.connectivity.n_faces() > args.largest => continue,
-            Ok(mesh) => mesh,
-            Err(error) => {
-                writeln!(std::io::stderr(), "left out: {error}")?;
-                continue;
-            }
-        };
-        let mut cells = vec![name(&path), mesh.connectivity.n_faces().to_string()];
-        match round_trip(&mesh) {
-            Ok(more) => cells.extend(more),
-            Err(error) => {
-                writeln!(std::io::stderr(), "{}: {error}", name(&path))?;
-                cells.extend(["failed"; 9].map(String::from));
-            }
-        }
-        writeln!(std::io::stderr(), "| {} |", cells.join(" | "))?;
-        table.push(cells);
-    }
-    write!(std::io::stdout(), "{table}")?;
-    Ok(())
+    let failures = args.selection.survey(|subject| {
+        let mut cells = vec![subject.name.clone(), subject.mesh.connectivity.n_faces().to_string()];
+        cells.extend(round_trip(&subject.mesh)?);
+        let is_same = !cells.iter().any(|cell| cell == NOT_THE_SAME);
+        table.report(cells);
+        if is_same { Ok(()) } else { Err("cones or loops are not the same".into()) }
+    })?;
+    Ok(Section::new(table, &failures))
 }
 
+const NOT_THE_SAME: &str = "NO";
+
 fn round_trip(mesh: &Mesh) -> Result<Vec<String>, Box<dyn Error>> {
-    let before = cpu_seconds();
+    let clock = Clock::start();
     let (connectivity, positions) = (&mesh.connectivity, &mesh.positions);
     let options = MapOptions::default();
     let mut go_on = |_| ControlFlow::Continue(());
@@ -89,8 +68,7 @@ fn round_trip(mesh: &Mesh) -> Result<Vec<String>, Box<dyn Error>> {
     let loops = |field: &CrossField| -> Vec<i32> {
         homology.loops().iter().map(|l| field.loop_index(connectivity, l)).collect()
     };
-    let yes = |same: bool| if same { "yes" } else { "NO" }.to_owned();
-    let cpu = before.zip(cpu_seconds()).map_or("-".into(), |(a, b)| format!("{:.2}", b - a));
+    let yes = |same: bool| if same { "yes" } else { NOT_THE_SAME }.to_owned();
     Ok(vec![
         first.map.cones().len().to_string(),
         homology.loops().len().to_string(),
@@ -100,11 +78,11 @@ fn round_trip(mesh: &Mesh) -> Result<Vec<String>, Box<dyn Error>> {
         format!("{:.3}", second.distortion.tau),
         format!("{basis:.1}"),
         format!("{elimination:.1}"),
-        cpu,
+        format!("{:.2}", clock.seconds()),
     ])
 }
 
-/// Milliseconds to find the full turns again after all matchings were shaken by some.
+/// Milliseconds to find the full turns again after all matchings were changed by some.
 fn time_of_elimination(
     mesh: &Mesh,
     homology: &Homology,
@@ -112,21 +90,21 @@ fn time_of_elimination(
     corner_uvs: &[[f64; 2]],
 ) -> Result<f64, Box<dyn Error>> {
     let connectivity = &mesh.connectivity;
-    let mut shaken: HalfedgeData<i32> = field.matching().clone();
+    let mut shifted: HalfedgeData<i32> = field.matching().clone();
     for h in connectivity.interior_edges() {
         let turns = 4 * ((h.0 % 3) as i32 - 1);
-        shaken[h] += turns;
+        shifted[h] += turns;
         if let Some(t) = connectivity.twin(h) {
-            shaken[t] -= turns;
+            shifted[t] -= turns;
         }
     }
-    let found = CrossField::new(connectivity, field.frames().clone(), shaken.clone())?
+    let found = CrossField::new(connectivity, field.frames().clone(), shifted.clone())?
         .node_indices(connectivity, homology);
     let (nodes, loops) = map_indices(connectivity, homology, corner_uvs);
     let begun = Instant::now();
-    let turns = lift(connectivity, homology, &shaken, &found, &nodes, &loops)?;
+    let turns = lift(connectivity, homology, &shifted, &found, &nodes, &loops)?;
     let elapsed = begun.elapsed().as_secs_f64() * 1e3;
-    let full = shaken.iter().zip(turns.iter()).map(|(r, k)| r + 4 * k).collect();
+    let full = shifted.iter().zip(turns.iter()).map(|(r, k)| r + 4 * k).collect();
     let lifted = CrossField::new(connectivity, field.frames().clone(), full)?;
     if lifted.node_indices(connectivity, homology) != nodes {
         return Err("the elimination missed the indices".into());

@@ -15,7 +15,7 @@ const DRAG: f64 = 2.0;
 
 /// A kind of damage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Damage {
+pub(super) enum Damage {
     /// Matchings of 0.1 % of the seams, one at least, changed by one up or down
     Matchings,
     /// Noise of 0.2 quarters to either side on all corner angles
@@ -29,7 +29,7 @@ pub(crate) enum Damage {
 }
 
 impl Damage {
-    pub(crate) const ALL: [Damage; 5] =
+    pub(super) const ALL: [Damage; 5] =
         [Damage::Matchings, Damage::Angles, Damage::Foldovers, Damage::Field, Damage::Naive];
 }
 
@@ -46,7 +46,7 @@ impl std::fmt::Display for Damage {
 }
 
 /// Changes some matchings by one, up or down.
-pub(crate) fn wrong_matchings(matchings: &mut [i32], rng: &mut Rng) {
+pub(super) fn wrong_matchings(matchings: &mut [i32], rng: &mut Rng) {
     if matchings.is_empty() {
         return;
     }
@@ -58,7 +58,7 @@ pub(crate) fn wrong_matchings(matchings: &mut [i32], rng: &mut Rng) {
 }
 
 /// Adds noise to all angles; they still sum to a half turn in every triangle.
-pub(crate) fn noisy_angles(angles: &HalfedgeData<f64>, rng: &mut Rng) -> HalfedgeData<f64> {
+pub(super) fn noisy_angles(angles: &HalfedgeData<f64>, rng: &mut Rng) -> HalfedgeData<f64> {
     let mut noisy: Vec<f64> =
         angles.iter().map(|a| a + NOISE * FRAC_PI_2 * (2.0 * rng.unit() - 1.0)).collect();
     for triangle in noisy.chunks_exact_mut(3) {
@@ -70,7 +70,7 @@ pub(crate) fn noisy_angles(angles: &HalfedgeData<f64>, rng: &mut Rng) -> Halfedg
 
 /// Drags some inner vertices away, all corners of each as its seams turn them; the angles of the broken
 /// map, and how many triangles it flips.
-pub(crate) fn folded_angles(
+pub(super) fn folded_angles(
     mesh: &TriMesh,
     corner_uvs: &[[f64; 2]],
     rng: &mut Rng,
@@ -99,7 +99,7 @@ pub(crate) fn folded_angles(
 }
 
 /// How many triangles are flipped or collapsed.
-pub(crate) fn count_flips(mesh: &TriMesh, uvs: &[[f64; 2]]) -> usize {
+pub(super) fn count_flips(mesh: &TriMesh, uvs: &[[f64; 2]]) -> usize {
     let flipped = |f: &Face| {
         let [a, b, _] = f.halfedges().map(|h| edge(uvs, h));
         a[0] * b[1] - a[1] * b[0] <= 0.0

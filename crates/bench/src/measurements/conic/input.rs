@@ -9,15 +9,15 @@ use std::error::Error;
 use std::path::Path;
 
 /// The exact layout of a map and its unknowns.
-pub(crate) struct Input {
-    pub(crate) layout: ExactLayout,
-    pub(crate) y: Vec<f64>,
-    pub(crate) z: Vec<Complex64>,
+pub(super) struct Input {
+    pub(super) layout: ExactLayout,
+    pub(super) y: Vec<f64>,
+    pub(super) z: Vec<Complex64>,
 }
 
 impl Input {
     /// Reads and certifies a map, and opens its exact layout.
-    pub(crate) fn load(path: &Path) -> Result<Self, Box<dyn Error>> {
+    pub(super) fn load(path: &Path) -> Result<Self, Box<dyn Error>> {
         let read = read_mesh(path)?;
         let uvs = read.corner_uvs.as_ref().ok_or("the file has no texture coordinates")?;
         let uvs: Option<Vec<[f64; 2]>> =

@@ -1,8 +1,8 @@
 //! One mesh: its good map, damaged, made consistent, laid out.
 
-use crate::damage::{Damage, count_flips, folded_angles, noisy_angles, wrong_matchings};
-use seamstress_bench::meshes::Mesh;
-use seamstress_bench::process::cpu_seconds;
+use super::damage::{Damage, count_flips, folded_angles, noisy_angles, wrong_matchings};
+use crate::meshes::Mesh;
+use crate::process::Clock;
 use seamstress_mesh::{HalfedgeData, Metric, TriMesh, components::components};
 use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut, lifted_angles,
@@ -29,13 +29,13 @@ struct Piece {
 }
 
 /// A mesh with a good map.
-pub(crate) struct Subject {
+pub(super) struct Subject {
     pieces: Vec<Piece>,
 }
 
 /// What became of a damaged map.
 #[derive(Debug, Default)]
-pub(crate) struct Outcome {
+pub(super) struct Outcome {
     triangles: usize,
     flips: usize,
     cones: [usize; 2],
@@ -45,13 +45,13 @@ pub(crate) struct Outcome {
     columns: usize,
     programs: usize,
     seconds: f64,
-    pub(crate) faults: usize,
-    pub(crate) mapped: bool,
+    pub(super) faults: usize,
+    pub(super) mapped: bool,
     note: String,
 }
 
 impl Outcome {
-    pub(crate) const TITLES: [&'static str; 13] = [
+    pub(super) const TITLES: [&'static str; 13] = [
         "mesh",
         "damage",
         "triangles",
@@ -67,7 +67,7 @@ impl Outcome {
         "result",
     ];
 
-    pub(crate) fn cells(&self, name: &str, damage: Damage) -> Vec<String> {
+    pub(super) fn cells(&self, name: &str, damage: Damage) -> Vec<String> {
         let result = match (self.faults, self.mapped) {
             (0, true) => "certified".to_owned(),
             (0, false) if self.note.is_empty() => "consistent".to_owned(),
@@ -98,7 +98,7 @@ impl Outcome {
 }
 
 impl Subject {
-    pub(crate) fn new(mesh: &Mesh) -> Result<Self, MapError> {
+    pub(super) fn new(mesh: &Mesh) -> Result<Self, MapError> {
         let mut go_on = |_| ControlFlow::Continue(());
         let options = MapOptions::default();
         let made = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?;
@@ -122,15 +122,15 @@ impl Subject {
         Ok(Self { pieces: pieces.into_iter().map(piece).collect() })
     }
 
-    pub(crate) fn recover(&self, damage: Damage, norm: AngleNorm, lays_out: bool) -> Outcome {
+    pub(super) fn recover(&self, damage: Damage, norm: AngleNorm, lays_out: bool) -> Outcome {
         let mut outcome = Outcome { mapped: lays_out, ..Outcome::default() };
         let mut rng = Rng::new(damage as u64);
         for piece in &self.pieces {
             outcome.triangles += piece.mesh.n_faces();
             let (matched, angles) = piece.damaged(damage, &mut rng, &mut outcome);
-            let start = cpu_seconds().unwrap_or_default();
+            let clock = Clock::start();
             let made = piece.consistent(&matched, &angles, norm);
-            outcome.seconds += cpu_seconds().unwrap_or_default() - start;
+            outcome.seconds += clock.seconds();
             match made {
                 Ok((consistent_cut, consistent)) => {
                     outcome.objective += consistent.objective;

@@ -1,57 +1,55 @@
-//! The own interior point against Clarabel: optimum, CPU time and memory.
-
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the table and its progress are what this program is for"
-)]
+//! Our interior point against Clarabel: optimum, CPU time and memory.
 
 mod input;
 mod measure;
 
-use clap::{Parser, ValueEnum};
-use measure::{Measurement, measure};
-use seamstress_bench::markdown::Table;
-use seamstress_bench::meshes::name;
-use seamstress_bench::process::exit_code;
+use crate::map_files::write_map;
+use crate::markdown::Table;
+use crate::meshes::{Mesh, Selection};
+use crate::output::{Section, progress};
+use clap::ValueEnum;
+use measure::{Measurement, solve_alone};
+use seamstress_mesh::components::components;
 use seamstress_parametrize::layout::conic::Solver;
+use seamstress_parametrize::{MapOptions, make_map};
 use std::error::Error;
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::Command;
 
-/// Compares the own solver of conic programs with Clarabel
+/// Conic programs: our interior point against Clarabel
 ///
-/// For every map, one program of each kind with the map's own frames and scales, over all layouts with the
-/// seams and matchings of the map; both solvers one after the other, each in a process and on a thread of
-/// its own, to the same tolerance. CPU seconds are those of setup (ordering, analysis) and solution. Memory is
-/// the peak of the process above what it holds before the solver's own setup. The exit code is 0 if all
-/// optima agree to 1e-4.
-#[derive(Debug, Parser)]
-struct Args {
-    /// Maps of one component each, as `seamstress map` writes them
-    #[arg(required = true)]
-    maps: Vec<PathBuf>,
+/// For a map of every mesh of one component, one program of each kind with the map's own frames and scales, over all
+/// layouts with the seams and matchings of the map; both solvers one after the other, each in a process and on a
+/// thread of its own, to the same tolerance. CPU seconds are those of setup (ordering, analysis) and solution.
+/// Memory is the peak of the process above the level before the solver's own setup. It counts as a failure if
+/// optima differ by more than 1e-4.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    selection: Selection,
 
     /// The programs to solve [default: all]
     #[arg(long, value_enum, value_delimiter = ',')]
     programs: Vec<Choice>,
 
-    /// Gap, as a part of the objective
+    /// Duality gap, relative to the objective
     #[arg(long, value_name = "X", default_value_t = 1e-6)]
     tolerance: f64,
 
-    /// Gap for Clarabel, where it is to be another
+    /// Gap for Clarabel, if different
     #[arg(long, value_name = "X")]
     clarabel_tolerance: Option<f64>,
 
-    /// Solve with one solver only, and print numbers: what the processes started by this program do
+    /// Solve one program on a map, an OBJ file, with one solver, and print numbers: for the processes that this
+    /// program starts
     #[arg(long, value_enum, hide = true)]
     alone: Option<SolverChoice>,
 }
 
-/// A program of the seed.
+/// A program of Levi 2021.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Choice {
+pub(super) enum Choice {
     /// Eq. (8)
     ArapMax,
     /// Eq. (9)
@@ -64,8 +62,10 @@ enum Choice {
 
 /// A solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SolverChoice {
+pub(super) enum SolverChoice {
+    /// Ours
     Own,
+    /// The reference
     Clarabel,
 }
 
@@ -81,20 +81,16 @@ impl From<SolverChoice> for Solver {
 /// Largest relative difference of optima that counts as agreement.
 const AGREEMENT: f64 = 1e-4;
 
-fn main() -> ExitCode {
-    exit_code(run(&Args::parse()))
-}
-
-/// Whether all optima agree.
-fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+/// Solves every program; passes if all optima agree.
+pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
     let programs: &[Choice] =
         if args.programs.is_empty() { Choice::value_variants() } else { &args.programs };
     if let Some(solver) = args.alone {
-        let (Some(map), Some(&program)) = (args.maps.first(), programs.first()) else {
+        let (Some(map), Some(&program)) = (args.selection.meshes.first(), programs.first()) else {
             return Err("nothing to solve".into());
         };
-        println!("{}", measure(map, program, solver.into(), args.tolerance)?.to_line());
-        return Ok(true);
+        let measurement = solve_alone(map, program, solver.into(), args.tolerance)?;
+        return Ok(Section::new(format!("{}\n", measurement.to_line()), &[]));
     }
     let mut table = Table::new([
         "map",
@@ -112,21 +108,31 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         "Cl. MB",
         "ratio",
     ]);
-    let mut agree = true;
-    for map in &args.maps {
-        for &program in programs {
-            let own = alone(map, program, SolverChoice::Own, args.tolerance)?;
-            let tolerance = args.clarabel_tolerance.unwrap_or(args.tolerance);
-            let other = alone(map, program, SolverChoice::Clarabel, tolerance)?;
-            let difference = own.objective / other.objective - 1.0;
-            agree &= difference.abs() <= AGREEMENT && own.solver == "own";
-            let cells = row(map, program, &own, &other, difference);
-            eprintln!("| {} |", cells.join(" | "));
-            table.push(cells);
+    let folder = tempfile::tempdir()?;
+    let map = folder.path().join("map.obj");
+    let failures = args.selection.survey(|subject| {
+        let Mesh { connectivity, positions } = &subject.mesh;
+        if components(connectivity)?.len() != 1 {
+            progress(&format!("left out: {}: several components", subject.name));
+            return Ok(());
         }
-    }
-    print!("{table}");
-    Ok(agree)
+        let mut go_on = |_| ControlFlow::Continue(());
+        let made = make_map(connectivity, positions, &MapOptions::default(), &mut go_on)?;
+        write_map(&map, &subject.mesh, made.map.corner_uvs())?;
+        let mut worst = 0.0_f64;
+        for &program in programs {
+            let own = alone(&map, program, SolverChoice::Own, args.tolerance)?;
+            let tolerance = args.clarabel_tolerance.unwrap_or(args.tolerance);
+            let other = alone(&map, program, SolverChoice::Clarabel, tolerance)?;
+            let difference = own.objective / other.objective - 1.0;
+            let is_own = own.solver == "own";
+            worst = worst.max(if is_own { difference.abs() } else { f64::INFINITY });
+            table.report(row(&subject.name, program, &own, &other, difference));
+        }
+        let agree = worst <= AGREEMENT;
+        if agree { Ok(()) } else { Err(format!("the optima differ by {worst:.1e}").into()) }
+    })?;
+    Ok(Section::new(table, &failures))
 }
 
 /// Measures in a process of its own.
@@ -140,6 +146,7 @@ fn alone(
         name.map_or(String::new(), |value| value.get_name().to_owned())
     };
     let output = Command::new(std::env::current_exe()?)
+        .arg("conic")
         .arg(map)
         .args(["--programs", &value(program.to_possible_value())])
         .args(["--alone", &value(solver.to_possible_value())])
@@ -150,14 +157,16 @@ fn alone(
         .env("MALLOC_TRIM_THRESHOLD_", "65536")
         .output()?;
     let text = String::from_utf8_lossy(&output.stdout);
-    Measurement::from_line(text.trim()).ok_or_else(|| {
+    // The page has the line of numbers at its end.
+    let line = text.trim().lines().last().unwrap_or_default();
+    Measurement::from_line(line).ok_or_else(|| {
         let reason = String::from_utf8_lossy(&output.stderr);
-        format!("{}, {program:?}, {solver:?}: {}", map.display(), reason.trim()).into()
+        format!("{program:?}, {solver:?}: {}", reason.trim()).into()
     })
 }
 
 fn row(
-    map: &Path,
+    name: &str,
     program: Choice,
     own: &Measurement,
     other: &Measurement,
@@ -166,7 +175,7 @@ fn row(
     let megabytes = |m: &Measurement| format!("{:.0}", m.bytes / 1e6);
     let mark = |m: &Measurement| if m.outcome == "Solved" { "" } else { " (!)" };
     vec![
-        name(map),
+        name.to_owned(),
         program.to_possible_value().map_or(String::new(), |v| v.get_name().to_owned()),
         own.triangles.to_string(),
         format!("{:.7}{}", own.objective, mark(own)),

@@ -1,0 +1,193 @@
+//! The time of a map, in units of one sparse Cholesky factorisation of the same mesh.
+
+use crate::markdown::Table;
+use crate::meshes::{Selection, Subject};
+use crate::output::{Section, progress};
+use crate::process::{Clock, Cost, forget_peak_memory, peak_memory};
+use crate::statistics::{median, order};
+use clap::value_parser;
+use seamstress_mesh::{Component, Metric, TriMesh, components};
+use seamstress_parametrize::cut::Cut;
+use seamstress_parametrize::layout::problem::LayoutProblem;
+use seamstress_parametrize::layout::space::LinearSpace;
+use seamstress_parametrize::layout::triangle::triangles;
+use seamstress_parametrize::{MapOptions, Stage, make_map};
+use std::collections::{BTreeMap, BTreeSet};
+use std::error::Error;
+use std::ops::ControlFlow;
+
+/// Speed: the time of a map in units of one factorisation
+///
+/// For every mesh of one component, in one process: the median time of a numeric Cholesky factorisation of its
+/// cotangent system (two unknowns per vertex, by the same library), and the time of a whole map with default
+/// settings. For several meshes, the order of growth of both with the number of triangles. On a busy machine only
+/// the CPU ratio means anything.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    selection: Selection,
+
+    /// Number of threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Measure this many times and take the median
+    #[arg(long, value_name = "R", default_value_t = 1, value_parser = value_parser!(u16).range(1..))]
+    repeat: u16,
+}
+
+/// Times maps and factorisations, small meshes first: memory that the allocator keeps of a large mesh would count for
+/// a small one. Passes if all meshes could be measured.
+pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0).into());
+    let pool = pool.build()?;
+    let mut measured = Vec::new();
+    let failures = pool.install(|| {
+        let survey = args.selection.survey(|subject| {
+            let Some(measurement) = measure_mesh(subject, args.repeat)? else {
+                progress(&format!("left out: {}: several components", subject.name));
+                return Ok(());
+            };
+            progress(&format!("{}: {:.2} s", measurement.name, measurement.map.wall));
+            measured.push(measurement);
+            Ok(())
+        });
+        survey.map_err(|error| error.to_string())
+    })?;
+    let threads = pool.current_num_threads();
+    let mut text = format!("{}\n{threads} threads, median of {}\n", table(&measured), args.repeat);
+    if measured.len() > 1 {
+        text += &format!("\nOrder of growth with the number of triangles: {}\n", growth(&measured));
+    }
+    Ok(Section::new(text, &failures))
+}
+
+/// One mesh.
+struct Measurement {
+    name: String,
+    triangles: usize,
+    factorisation: Cost,
+    map: Cost,
+    /// Seconds of the stages of that map.
+    stages: BTreeMap<Stage, f64>,
+    /// Bytes.
+    peak: Option<f64>,
+}
+
+/// None for a mesh of several components.
+fn measure_mesh(subject: &Subject, repeat: u16) -> Result<Option<Measurement>, Box<dyn Error>> {
+    let whole = &subject.mesh;
+    // As a component it has no vertex without a face.
+    let mut pieces = components::components(&whole.connectivity)?;
+    let (Some(Component { mesh, vertices, .. }), true) = (pieces.pop(), pieces.is_empty()) else {
+        return Ok(None);
+    };
+    let positions: Vec<_> = vertices.iter().map(|v| whole.positions[v.at()]).collect();
+    forget_peak_memory();
+    let (mut factorisations, mut maps) = (Vec::new(), Vec::new());
+    for _ in 0..repeat.max(1) {
+        factorisations.push(time_factorisation(&mesh, &positions)?);
+        maps.push(time_map(&mesh, &positions)?);
+    }
+    let medians = median(factorisations, |cost| cost.wall).zip(median(maps, |(cost, _)| cost.wall));
+    Ok(medians.map(|(factorisation, (map, stages))| Measurement {
+        name: subject.name.clone(),
+        triangles: mesh.n_faces(),
+        factorisation,
+        map,
+        stages,
+        peak: peak_memory(),
+    }))
+}
+
+/// Times the numeric factorisation of the Dirichlet form of the uncut mesh, median of many.
+fn time_factorisation(mesh: &TriMesh, positions: &[[f64; 3]]) -> Result<Cost, Box<dyn Error>> {
+    const MIN_COUNT: usize = 9;
+    // One factorisation is too short for the clock of CPU time.
+    const MIN_SECONDS: f64 = 0.5;
+    const SHIFT: f64 = 1e-8;
+    let metric = Metric::from_positions(mesh, positions);
+    let uncut = Cut::new(mesh, |_| true);
+    let space = LinearSpace::free(uncut.n_wedges);
+    let mut problem = LayoutProblem::new(space, triangles(mesh, &metric, &uncut), None)?;
+    problem.assemble_dirichlet();
+    problem.factorize(SHIFT)?;
+    let clock = Clock::start();
+    let mut walls = Vec::new();
+    while walls.len() < MIN_COUNT || clock.cost().wall < MIN_SECONDS {
+        let start = Clock::start();
+        problem.factorize(SHIFT)?;
+        walls.push(start.cost().wall);
+    }
+    let cpu = clock.cost().cpu / walls.len() as f64;
+    let wall = median(walls, |&wall| wall).unwrap_or(f64::NAN);
+    Ok(Cost { wall, cpu })
+}
+
+fn time_map(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+) -> Result<(Cost, BTreeMap<Stage, f64>), Box<dyn Error>> {
+    let clock = Clock::start();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let solution = make_map(mesh, positions, &MapOptions::default(), &mut go_on)?;
+    let cost = clock.cost();
+    let mut stages = BTreeMap::new();
+    for lap in solution.components.iter().flat_map(|c| &c.stages) {
+        *stages.entry(lap.stage).or_default() += lap.seconds;
+    }
+    Ok((cost, stages))
+}
+
+fn table(measured: &[Measurement]) -> Table {
+    let stages: BTreeSet<Stage> = measured.iter().flat_map(|m| m.stages.keys().copied()).collect();
+    let mut titles: Vec<String> = [
+        "mesh",
+        "triangles",
+        "factorisation s",
+        "map wall s",
+        "map CPU s",
+        "wall ratio",
+        "CPU ratio",
+    ]
+    .map(String::from)
+    .into();
+    titles.extend(stages.iter().map(|stage| format!("{} %", stage.name())));
+    titles.extend(["rest %".into(), "MB".into()]);
+    let mut table = Table::new(titles);
+    for m in measured {
+        let percent = |seconds: f64| number(100.0 * seconds / m.map.wall, 0);
+        let mut cells = vec![
+            m.name.clone(),
+            m.triangles.to_string(),
+            number(m.factorisation.wall, 4),
+            number(m.map.wall, 2),
+            number(m.map.cpu, 2),
+            number(m.map.wall / m.factorisation.wall, 1),
+            number(m.map.cpu / m.factorisation.cpu, 1),
+        ];
+        let seconds = |stage| m.stages.get(stage).copied().unwrap_or(0.0);
+        cells.extend(stages.iter().map(|stage| percent(seconds(stage))));
+        cells.push(percent(m.map.wall - m.stages.values().sum::<f64>()));
+        cells.push(number(m.peak.unwrap_or(f64::NAN) / 1e6, 0));
+        table.push(cells);
+    }
+    table
+}
+
+fn number(x: f64, decimals: usize) -> String {
+    if x.is_finite() { format!("{x:.decimals$}") } else { "-".into() }
+}
+
+fn growth(measured: &[Measurement]) -> String {
+    let exponent = |time: fn(&Measurement) -> f64| {
+        let points: Vec<_> = measured.iter().map(|m| (m.triangles as f64, time(m))).collect();
+        number(order(&points).unwrap_or(f64::NAN), 2)
+    };
+    format!(
+        "factorisation {}, map {} (wall) and {} (CPU)",
+        exponent(|m| m.factorisation.wall),
+        exponent(|m| m.map.wall),
+        exponent(|m| m.map.cpu)
+    )
+}
