@@ -7,7 +7,7 @@ use crate::options::not_negative;
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
 use crate::surface::Surface;
 use seamstress_parametrize::map::Certificate;
-use seamstress_parametrize::quality::{SingularValues, distortion, measure_all};
+use seamstress_parametrize::quality::{SingularValues, measure_all};
 use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
 use serde::{Deserialize, Serialize};
 
@@ -149,7 +149,7 @@ impl Surface {
             true => None,
             false => Some(self.features(&options.features)?),
         };
-        let distortion = Distortion::from(&distortion(self.mesh(), self.metric(), &corner_uvs));
+        let distortion = self.distortion(&corner_uvs);
         let mut verdict = Verdict {
             certified: false,
             violations: Vec::new(),

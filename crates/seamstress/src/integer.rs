@@ -225,7 +225,7 @@ impl Surface {
     }
 
     /// What a map that is given follows of the features asked for.
-    fn followed(
+    pub(crate) fn followed(
         &self,
         map: &method::SeamlessMap,
         features: &Features,

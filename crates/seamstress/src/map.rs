@@ -17,14 +17,15 @@ use std::collections::HashMap;
 #[cfg(feature = "io")]
 use std::{io, path::Path};
 
-/// A certified seamless map of a surface.
+/// A certified seamless map of a surface, with a report of how it was made.
 #[derive(Debug, Clone)]
-pub struct SeamlessMap {
+pub struct SeamlessMap<R = MapReport> {
     surface: Surface,
     map: method::SeamlessMap,
     corners: CornerUvs,
     features: Option<AlignedFeatures>,
-    report: MapReport,
+    distortion: Distortion,
+    report: R,
 }
 
 /// How a map was made, and how good it is.
@@ -60,21 +61,32 @@ impl SeamlessMap {
         options: &MapOptions,
         components: Vec<ComponentStats>,
     ) -> Self {
-        let distortion =
-            method::quality::distortion(surface.mesh(), surface.metric(), map.corner_uvs());
+        let distortion = surface.distortion(map.corner_uvs());
         let report = MapReport {
             seamstress: VERSION,
             options: options.clone(),
             input: surface.report().clone(),
             components,
-            distortion: Distortion::from(&distortion),
+            distortion,
             cones: ConeReport::new(map.cones()),
             seams: SeamReport::new(map.seams()),
             certificate: map.certificate().clone(),
             features: features.as_ref().map(|features| features.report.clone()),
         };
+        Self::reported(surface, map, features, report)
+    }
+}
+
+impl<R> SeamlessMap<R> {
+    pub(crate) fn reported(
+        surface: &Surface,
+        map: method::SeamlessMap,
+        features: Option<AlignedFeatures>,
+        report: R,
+    ) -> Self {
         let corners = CornerUvs::new(surface.faces(), map.corner_uvs());
-        Self { surface: surface.clone(), map, corners, features, report }
+        let distortion = surface.distortion(map.corner_uvs());
+        Self { surface: surface.clone(), map, corners, features, distortion, report }
     }
 
     /// The surface it is of.
@@ -122,8 +134,13 @@ impl SeamlessMap {
         self.features.as_ref().map_or(&[], |features| &features.dropped)
     }
 
+    /// Its distortion.
+    pub fn distortion(&self) -> &Distortion {
+        &self.distortion
+    }
+
     /// How it was made, and how good it is.
-    pub fn report(&self) -> &MapReport {
+    pub fn report(&self) -> &R {
         &self.report
     }
 
@@ -142,7 +159,7 @@ impl SeamlessMap {
     /// Those of the writer.
     #[cfg(feature = "io")]
     pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
-        let lines = [self.report.distortion.line(self.cones().len())];
+        let lines = [self.distortion.line(self.cones().len())];
         write_map(writer, &self.surface, "Seamless map", self.corner_uvs(), &lines)
     }
 
@@ -221,6 +238,10 @@ impl CornerUvs {
 }
 
 impl Surface {
+    pub(crate) fn distortion(&self, corner_uvs: &[[f64; 2]]) -> Distortion {
+        Distortion::from(&method::quality::distortion(self.mesh(), self.metric(), corner_uvs))
+    }
+
     /// Makes a seamless map of low distortion by the direct method, and certifies it.
     ///
     /// # Errors
@@ -294,7 +315,7 @@ impl Surface {
     }
 
     /// A fault of this program.
-    fn misaligned(&self, violations: &Violations) -> Error {
+    pub(crate) fn misaligned(&self, violations: &Violations) -> Error {
         let text = format!("a map was made, but its features are not aligned: {violations}");
         Error::new(ErrorKind::Internal, text)
             .with_findings(self.findings(violations))

@@ -86,6 +86,16 @@ impl Surface {
         self
     }
 
+    /// The same surface as one that was read from a file.
+    #[cfg(all(feature = "lab", feature = "io"))]
+    pub(crate) fn named(mut self, input: Option<&str>) -> Self {
+        if let Some(inner) = Arc::get_mut(&mut self.inner) {
+            inner.parts.input = input.map(str::to_owned);
+            inner.report.file = input.map(str::to_owned);
+        }
+        self
+    }
+
     /// Positions, #V by 3, mesh units.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.inner.parts.soup.positions
