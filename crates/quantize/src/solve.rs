@@ -108,7 +108,7 @@ pub enum IntegerError {
 ///
 /// # Source
 /// Levi 2021, supplement, section 8, for what must be integral and for [`super::IntegerRounding::Greedy`];
-/// the constrained rounding is that of `docs/theory/08-integer-maps.md`.
+/// the constrained rounding is that of `docs/theory/08-integer-grid-maps.md`.
 pub fn to_integer_map(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
