@@ -1,106 +1,168 @@
-//! Long work: threads, progress, the time limit, Ctrl-C.
+//! Running work: threads, progress, the time limit, Ctrl-C.
 
 use crate::args::RunArgs;
-use crate::outcome::Failure;
-use crate::output::Batch;
+use crate::failure::Failure;
 use crate::progress::Bars;
-use crate::report::Cost;
-use crate::stop::{Abandoned, Stop, supervise};
 use crate::system;
-use crate::text;
-use seamstress_parametrize::Progress;
+use seamstress::{CancelToken, Context};
+use serde::Serialize;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
 
-/// A run of a command that may take long.
+/// How long work may take to notice that it should stop, before it is abandoned.
+const GRACE: Duration = Duration::from_secs(1);
+/// How often the waiting thread looks up.
+const LOOK_UP: Duration = Duration::from_millis(20);
+/// Stack of the working thread, as large as main threads have.
+const STACK: usize = 8 << 20;
+
+/// A run of a command.
 pub(crate) struct Job {
-    file: PathBuf,
+    start: Instant,
+    run: RunArgs,
+    cancel: CancelToken,
+    interrupts: Arc<AtomicUsize>,
     bars: Bars,
-    stop: Stop,
 }
 
-/// What the working thread has of a [`Job`].
-pub(crate) struct Worker {
-    pub(crate) stop: Stop,
-    bars: Bars,
+/// What a run has cost.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Cost {
+    pub(crate) wall_seconds: f64,
+    /// All threads together; where the system tells.
+    pub(crate) cpu_seconds: Option<f64>,
+    /// Where the system tells.
+    pub(crate) peak_memory_bytes: Option<u64>,
+    pub(crate) threads: usize,
 }
 
 impl Job {
-    /// Starts the clock; `file` is the input that messages name.
-    pub(crate) fn new(run: &RunArgs, file: &Path) -> Result<Self, Failure> {
-        let stop = Stop::new(run.time_limit);
-        set_threads(run.threads)?;
-        Ok(Self { file: file.to_owned(), bars: Bars::new(!run.quiet), stop })
+    /// Starts the clock, and listens to Ctrl-C.
+    pub(crate) fn new(run: RunArgs) -> Self {
+        let (cancel, interrupts) = (CancelToken::new(), Arc::new(AtomicUsize::new(0)));
+        let (token, count) = (cancel.clone(), Arc::clone(&interrupts));
+        // Without a handler Ctrl-C ends the process, which leaves nothing behind either.
+        let _ = ctrlc::set_handler(move || {
+            token.cancel();
+            count.fetch_add(1, Ordering::Relaxed);
+        });
+        Self { start: Instant::now(), run, cancel, interrupts, bars: Bars::new(!run.quiet) }
     }
 
-    /// Does the work in a thread of its own, which is left behind if it does not stop when it should.
-    pub(crate) fn run<T: Send + 'static>(
+    /// The context of the work.
+    pub(crate) fn context(&self) -> Context {
+        let bars = self.bars.clone();
+        let mut context = Context::new()
+            .cancel_token(&self.cancel)
+            .threads(self.run.threads.unwrap_or_default() as usize)
+            .observer(move |progress| {
+                bars.show(progress);
+                ControlFlow::Continue(())
+            });
+        if let Some(limit) = self.run.time_limit {
+            context = context.time_limit(limit);
+        }
+        context
+    }
+
+    /// Does work in a thread of its own, which is left behind if it does not stop when it should.
+    pub(crate) fn supervise<T: Send + 'static>(
         &self,
-        work: impl FnOnce(Worker) -> Result<T, Failure> + Send + 'static,
+        input: &str,
+        work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
     ) -> Result<T, Failure> {
-        let worker = Worker { stop: self.stop.clone(), bars: self.bars.clone() };
-        let made = supervise(&self.stop, move || work(worker));
+        let done = self.wait_for(input, work);
         self.bars.clear();
-        made.unwrap_or_else(|abandoned| Err(self.failure(abandoned)))
+        done
     }
 
-    fn failure(&self, abandoned: Abandoned) -> Failure {
-        let file = self.file.clone();
-        match abandoned {
-            Abandoned::Stopped(reason) => Failure::Stopped { file, reason },
-            Abandoned::Panicked => {
-                Failure::Internal { file, text: "the computation broke off".into() }
+    fn wait_for<T: Send + 'static>(
+        &self,
+        input: &str,
+        work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+    ) -> Result<T, Failure> {
+        let input = || input.to_owned();
+        let (sender, receiver) = channel();
+        let spawned = thread::Builder::new().stack_size(STACK).spawn(move || {
+            // The receiver is gone if the work was abandoned.
+            let _ = sender.send(work());
+        });
+        if spawned.is_err() {
+            return Err(Failure::Panicked { input: input() });
+        }
+        let mut noticed: Option<Instant> = None;
+        loop {
+            match receiver.recv_timeout(LOOK_UP) {
+                Ok(result) => return result,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(Failure::Panicked { input: input() });
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            let limit = self.run.time_limit.filter(|&limit| self.start.elapsed() > limit);
+            if limit.is_none() && !self.cancel.is_cancelled() {
+                continue;
+            }
+            let since = noticed.get_or_insert_with(Instant::now);
+            if since.elapsed() > GRACE || self.interrupts.load(Ordering::Relaxed) > 1 {
+                return Err(match limit {
+                    Some(limit) => Failure::TimeLimit { input: input(), limit },
+                    None => Failure::Interrupted { input: input() },
+                });
             }
         }
     }
 
-    /// Puts the outputs in place, unless the run was stopped, and prints its report or its summary.
-    pub(crate) fn finish(
-        &self,
-        run: &RunArgs,
-        outputs: Batch,
-        report: impl FnOnce() -> String,
-        summary: impl FnOnce() -> String,
-    ) -> Result<(), Failure> {
-        if let Some(reason) = self.stop.reason() {
-            return Err(Failure::Stopped { file: self.file.clone(), reason });
-        }
-        outputs.commit()?;
-        match (run.json, run.quiet) {
-            (true, _) => text::print(&report()),
-            (false, true) => Ok(()),
-            (false, false) => text::print(&summary()),
+    /// Fails if Ctrl-C was pressed.
+    pub(crate) fn check_interrupt(&self, input: &str) -> Result<(), Failure> {
+        match self.cancel.is_cancelled() {
+            true => Err(Failure::Interrupted { input: input.to_owned() }),
+            false => Ok(()),
         }
     }
 
     /// What the run has cost so far.
     pub(crate) fn cost(&self) -> Cost {
+        let all = || thread::available_parallelism().map_or(1, usize::from);
         Cost {
-            wall_seconds: self.stop.elapsed().as_secs_f64(),
+            wall_seconds: self.start.elapsed().as_secs_f64(),
             cpu_seconds: system::cpu_seconds(),
             peak_memory_bytes: system::peak_memory(),
-            threads: rayon::current_num_threads(),
+            threads: self.run.threads.map_or_else(all, |threads| threads as usize),
         }
     }
 }
 
-impl Worker {
-    /// Shows progress, and breaks when the work should stop.
-    pub(crate) fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
-        self.bars.show(progress);
-        match self.stop.reason() {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
-        }
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn set_threads(threads: Option<u32>) -> Result<(), Failure> {
-    let Some(threads) = threads else {
-        return Ok(());
-    };
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads as usize)
-        .build_global()
-        .map_err(|error| Failure::Usage(format!("cannot start {threads} threads: {error}")))
+    #[test]
+    fn work_that_does_not_listen_is_abandoned() {
+        let run = RunArgs { time_limit: Some(Duration::from_millis(1)), ..RunArgs::default() };
+        let job = Job::new(run);
+        let start = Instant::now();
+        let result = job.supervise("a", || {
+            thread::sleep(Duration::from_secs(60));
+            Ok(())
+        });
+        assert!(matches!(result, Err(Failure::TimeLimit { .. })), "{result:?}");
+        assert!(start.elapsed() < Duration::from_secs(20));
+    }
+
+    #[test]
+    fn work_that_ends_is_returned() {
+        assert!(matches!(Job::new(RunArgs::default()).supervise("a", || Ok(7)), Ok(7)));
+    }
+
+    #[test]
+    fn work_that_breaks_off_is_reported() {
+        let broken = || -> Result<(), Failure> { panic!("for the test") };
+        let result = Job::new(RunArgs::default()).supervise("a", broken);
+        assert!(matches!(result, Err(Failure::Panicked { .. })), "{result:?}");
+    }
 }

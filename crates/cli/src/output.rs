@@ -1,7 +1,7 @@
 //! Output files: checked before the work, written after it, put in place together.
 
-use crate::outcome::Failure;
-use seamstress_io::{AtomicFile, Format};
+use crate::failure::Failure;
+use seamstress::{AtomicFile, Error, Format};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,16 @@ pub(crate) enum Kind {
     Field,
     Matching,
     Picture,
+}
+
+impl Kind {
+    pub(crate) fn is_picture(self) -> bool {
+        self == Self::Picture
+    }
+
+    pub(crate) fn is_report(self) -> bool {
+        self == Self::Report
+    }
 }
 
 /// A file to be written.
@@ -111,13 +121,13 @@ impl Plan {
         if let Some(folder) = folder {
             let base = missing(folder).last().copied().unwrap_or(folder);
             // The name is that of the folder to be made, which is not there.
-            AtomicFile::create(base)?;
+            create(base)?;
         }
         for Target { path, .. } in &self.targets {
             let is_in_new_folder =
                 folder.is_some_and(|folder| identity(parent(path)) == identity(folder));
             if !is_in_new_folder {
-                AtomicFile::create(path)?;
+                create(path)?;
             }
         }
         Ok(())
@@ -154,6 +164,10 @@ fn parent(path: &Path) -> &Path {
     }
 }
 
+fn create(path: &Path) -> Result<AtomicFile, Failure> {
+    Ok(AtomicFile::create(path).map_err(Error::from)?)
+}
+
 /// The folders that are missing on the way to one, innermost first.
 fn missing(folder: &Path) -> Vec<&Path> {
     folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect()
@@ -171,8 +185,9 @@ pub(crate) struct Batch {
 impl Batch {
     fn make(&mut self, folder: &Path) -> Result<(), Failure> {
         for path in missing(folder).into_iter().rev() {
-            fs::create_dir(path)
-                .map_err(|cause| Failure::Output { path: path.to_owned(), cause })?;
+            fs::create_dir(path).map_err(|cause| {
+                Failure::Usage(format!("cannot write {}: {cause}", path.display()))
+            })?;
             self.made_folders.push(path.to_owned());
         }
         Ok(())
@@ -184,7 +199,7 @@ impl Batch {
         path: &Path,
         content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        let mut file = AtomicFile::create(path)?;
+        let mut file = create(path)?;
         content(&mut file)
             .and_then(|()| io::Write::flush(&mut file))
             .map_err(|error| Failure::Usage(error.to_string()))?;
@@ -200,7 +215,7 @@ impl Batch {
         for file in std::mem::take(&mut self.files) {
             let path = file.path().to_owned();
             let is_new = !path.exists();
-            file.commit()?;
+            file.commit().map_err(Error::from)?;
             if is_new {
                 self.made_files.push(path);
             }

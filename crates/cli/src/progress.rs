@@ -1,8 +1,9 @@
 //! Progress bars on standard error.
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use seamstress_parametrize::{Progress, Stage};
+use seamstress::{Progress, Stage};
 use std::io::IsTerminal;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// Ticks of a full bar.
@@ -13,7 +14,7 @@ const REDRAW: Duration = Duration::from_millis(200);
 #[derive(Debug, Clone)]
 pub(crate) struct Bars {
     all: MultiProgress,
-    current: Option<(usize, Stage, ProgressBar)>,
+    current: Arc<Mutex<Option<(usize, Stage, ProgressBar)>>>,
 }
 
 impl Bars {
@@ -24,29 +25,25 @@ impl Bars {
         } else {
             ProgressDrawTarget::hidden()
         };
-        Self { all: MultiProgress::with_draw_target(target), current: None }
+        Self { all: MultiProgress::with_draw_target(target), current: Arc::default() }
     }
 
     /// Shows where the work stands.
-    pub(crate) fn show(&mut self, progress: Progress) {
+    pub(crate) fn show(&self, progress: Progress) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         let (component, stage) = (progress.component, progress.stage);
         let is_current = |&(c, s, _): &(usize, Stage, ProgressBar)| (c, s) == (component, stage);
-        if !self.current.as_ref().is_some_and(is_current) {
-            self.finish_stage(progress.n_components == 1);
-            let bar = self.all.add(bar(&progress));
-            self.current = Some((component, stage, bar));
+        if !current.as_ref().is_some_and(is_current) {
+            // The bars of many components would fill the screen.
+            match current.take() {
+                Some((_, _, bar)) if progress.n_components == 1 => bar.finish(),
+                Some((_, _, bar)) => bar.finish_and_clear(),
+                None => {}
+            }
+            *current = Some((component, stage, self.all.add(bar(&progress))));
         }
-        if let Some((_, _, bar)) = &self.current {
+        if let Some((_, _, bar)) = &*current {
             bar.set_position((FULL as f64 * progress.fraction) as u64);
-        }
-    }
-
-    /// Ends the current bar; the bars of many components would fill the screen.
-    fn finish_stage(&mut self, keep: bool) {
-        match self.current.take() {
-            Some((_, _, bar)) if keep => bar.finish(),
-            Some((_, _, bar)) => bar.finish_and_clear(),
-            None => {}
         }
     }
 

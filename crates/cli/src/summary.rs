@@ -1,39 +1,37 @@
-//! Summaries for people.
+//! Summaries for people: rows of a label and a text.
 
-use crate::features::{AlignedFeatures, Features};
-use crate::input::LoadedMesh;
-use crate::report::{Cost, cones_by_index, tau};
-use crate::text::{counted, figure, row};
-use seamstress_mesh::features::NodeKind;
-use seamstress_parametrize::mixed_integer::MixedIntegerStats;
-use seamstress_parametrize::quality::Distortion;
-use seamstress_parametrize::{Alignment, ComponentStats, SeamlessMap};
+use crate::job::Cost;
+use crate::text::{counted, listing, rounded, row};
+use seamstress::{
+    Alignment, Certificate, ComponentStats, ConeReport, Distortion, FeatureReport,
+    IntegerCertificate, MapReport, Measure, Measurement, MixedIntegerStats, Orientation,
+    QuadMeshReport, QualityReport, SurfaceReport,
+};
 
-/// Released features that are listed; the report has them all.
-const SHOWN_RELEASED: usize = 10;
+/// Dropped features that are listed; the report has them all.
+const SHOWN_DROPPED: usize = 10;
+/// Faults of quads that are listed.
+const SHOWN_FAULTS: usize = 5;
 
 /// Name, size and topology of a mesh.
-pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
-    let facts = &mesh.facts;
+pub(crate) fn surface_rows(report: &SurfaceReport) -> Vec<String> {
     let counts = [
-        counted(facts.n_vertices, "vertex"),
-        counted(facts.n_edges, "edge"),
-        counted(facts.n_faces, "triangle"),
+        counted(report.vertices, "vertex"),
+        counted(report.edges, "edge"),
+        counted(report.faces, "triangle"),
     ];
-    let genus = facts.genus().map_or("genus undefined".into(), |g| format!("genus {g}"));
-    let boundary = match facts.boundary_loops() {
-        0 => "closed".into(),
-        n => counted(n, "boundary loop"),
-    };
-    let components = counted(facts.components.len(), "component");
-    let characteristic = facts.euler_characteristic();
-    let repaired = match mesh.repairs.len() {
+    let genus = report.genus.map_or("genus undefined".into(), |g| format!("genus {g}"));
+    let boundary = boundary_text(report.boundary_loops);
+    let components = counted(report.components.len(), "component");
+    let characteristic = report.euler_characteristic;
+    let repaired = match report.repairs.len() {
         0 => String::new(),
         n => format!(", after {}", counted(n, "repair")),
     };
-    let name = mesh.path.display();
+    let name = report.file.as_deref().unwrap_or_default();
+    let format = report.format.iter().map(|format| format!(" ({format})")).collect::<String>();
     vec![
-        row("mesh", &format!("{name} ({}){repaired}", mesh.format)),
+        row("mesh", &format!("{name}{format}{repaired}")),
         row("size", &counts.join(", ")),
         row(
             "topology",
@@ -42,38 +40,51 @@ pub(crate) fn mesh_rows(mesh: &LoadedMesh) -> Vec<String> {
     ]
 }
 
+fn boundary_text(loops: usize) -> String {
+    match loops {
+        0 => "closed".into(),
+        n => counted(n, "boundary loop"),
+    }
+}
+
+/// Edge lengths and angles of a mesh.
+pub(crate) fn size_rows(report: &SurfaceReport) -> Option<String> {
+    let (shortest, longest) = (report.min_edge_length?, report.max_edge_length?);
+    let mut text = format!("edges of {} to {}", rounded(shortest), rounded(longest));
+    if let Some(angle) = report.min_angle {
+        text += &format!(", smallest angle {} degrees", rounded(angle.to_degrees()));
+    }
+    Some(row("shape", &text))
+}
+
 /// The curves and corners of features, and where they come from.
-pub(crate) fn feature_rows(features: &Features) -> Vec<String> {
-    let graph = &features.graph;
-    let loops = graph.n_loops();
+pub(crate) fn feature_rows(report: &FeatureReport) -> Vec<String> {
     let mut text = format!(
         "{}: {}, {}",
-        counted(features.edges.len(), "edge"),
-        counted(graph.curves.len() - loops, "curve"),
-        counted(loops, "loop"),
+        counted(report.edges, "edge"),
+        counted(report.curves.len() - report.loops, "curve"),
+        counted(report.loops, "loop"),
     );
-    for (kind, noun) in [
-        (NodeKind::Junction, "junction"),
-        (NodeKind::Turn, "turn"),
-        (NodeKind::OpenEnd, "open end"),
-        (NodeKind::BoundaryEnd, "end on the boundary"),
-    ] {
-        match graph.count(kind) {
+    let nodes = [
+        (report.junctions, "junction", "junctions"),
+        (report.turns, "turn", "turns"),
+        (report.open_ends, "open end", "open ends"),
+        (report.boundary_ends, "end on the boundary", "ends on the boundary"),
+    ];
+    for (count, one, many) in nodes {
+        match count {
             0 => {}
-            n if kind == NodeKind::BoundaryEnd && n > 1 => {
-                text += &format!(", {n} ends on the boundary");
-            }
-            n => text += &format!(", {}", counted(n, noun)),
+            1 => text += &format!(", 1 {one}"),
+            n => text += &format!(", {n} {many}"),
         }
     }
-    let mut sources: Vec<String> = features
+    let mut sources: Vec<String> = report
         .sources
         .iter()
-        .map(|(source, edges)| format!("{source} {}", counted(*edges, "edge")))
+        .map(|source| format!("{} {}", source.source, counted(source.edges, "edge")))
         .collect();
-    if features.align_boundary {
-        let edges = counted(features.boundary_edges(), "edge");
-        sources.push(format!("boundary {edges}"));
+    if report.align_boundary {
+        sources.push(format!("boundary {}", counted(report.boundary_edges, "edge")));
     }
     vec![row("features", &text), row("", &format!("from {}", sources.join(", ")))]
 }
@@ -94,20 +105,20 @@ pub(crate) fn alignment_row(alignment: &Alignment) -> String {
 }
 
 /// The certificate of alignment, and the features that are not aligned.
-pub(crate) fn aligned_rows(features: &AlignedFeatures) -> Vec<String> {
-    let mut rows = vec![alignment_row(&features.alignment)];
-    let released = &features.released;
-    if released.is_empty() {
+pub(crate) fn aligned_rows(features: &FeatureReport) -> Vec<String> {
+    let mut rows: Vec<String> = features.alignment.iter().map(alignment_row).collect();
+    let dropped = features.dropped.as_deref().unwrap_or_default();
+    if dropped.is_empty() {
         return rows;
     }
-    let asked = counted(features.asked.edges.len(), "edge");
-    rows.push(row("released", &format!("{} of {asked} not aligned", released.len())));
-    rows.extend(released.iter().take(SHOWN_RELEASED).map(|feature| {
+    let asked = counted(features.edges, "edge");
+    rows.push(row("dropped", &format!("{} of {asked} not aligned", dropped.len())));
+    rows.extend(dropped.iter().take(SHOWN_DROPPED).map(|feature| {
         let [a, b] = feature.vertices;
         row("", &format!("edge {a}-{b}: {}", feature.reason))
     }));
-    if released.len() > SHOWN_RELEASED {
-        let more = released.len() - SHOWN_RELEASED;
+    if dropped.len() > SHOWN_DROPPED {
+        let more = dropped.len() - SHOWN_DROPPED;
         rows.push(row("", &format!("and {more} more; the report has them all")));
     }
     rows
@@ -141,34 +152,36 @@ pub(crate) fn mixed_integer_rows(components: &[ComponentStats]) -> Vec<String> {
 }
 
 /// Distortion, cones, seams and certificate of a map.
-pub(crate) fn map_rows(map: &SeamlessMap, distortion: &Distortion) -> Vec<String> {
-    let certificate = map.certificate();
-    let cones = cones_by_index(map.cones());
+pub(crate) fn map_rows(map: &MapReport) -> Vec<String> {
+    let mut rows = distortion_rows(&map.distortion);
+    rows.extend(certificate_rows(&map.cones, &map.certificate));
+    rows
+}
+
+/// Cones, seams and certificate of a map.
+pub(crate) fn certificate_rows(cones: &ConeReport, certificate: &Certificate) -> Vec<String> {
     let by_index: Vec<String> =
-        cones.iter().map(|(index, count)| format!("{count} of index {index:+}")).collect();
-    let cones = match map.cones().len() {
+        cones.by_index.iter().map(|(index, count)| format!("{count} of index {index:+}")).collect();
+    let cones = match cones.count {
         0 => "none".into(),
         n => format!("{n}: {}", by_index.join(", ")),
     };
-    let mut rows = distortion_rows(distortion);
-    rows.extend([
+    vec![
         row("cones", &cones),
         row("seams", &counted(certificate.seam_edges, "edge")),
         row(
             "certificate",
             &format!(
-                "passed: no flips, seams fit to {:.1e} mean edge lengths, angles to {:.1e} rad",
+                "passed: no flips, seams fit to {:.1e} edge lengths, angles to {:.1e} rad",
                 certificate.seam_residual, certificate.angle_error
             ),
         ),
-    ]);
-    rows
+    ]
 }
 
 /// The distortion, in two rows.
-pub(crate) fn distortion_rows(distortion: &Distortion) -> Vec<String> {
-    let d = distortion;
-    if tau(d).is_nan() {
+pub(crate) fn distortion_rows(d: &Distortion) -> Vec<String> {
+    if d.tau.is_nan() {
         return vec![row("distortion", "undefined: no triangle has an area")];
     }
     let mut rows = vec![
@@ -176,38 +189,282 @@ pub(crate) fn distortion_rows(distortion: &Distortion) -> Vec<String> {
             "distortion",
             &format!(
                 "tau {}; per triangle: median {}, 95% {}, 99% {} (1 = isometry)",
-                figure(tau(d)),
-                figure(d.tau_t.p50),
-                figure(d.tau_t.p95),
-                figure(d.tau_t.p99)
+                rounded(d.tau),
+                rounded(d.tau_t.p50),
+                rounded(d.tau_t.p95),
+                rounded(d.tau_t.p99)
             ),
         ),
         row(
             "energy",
             &format!(
                 "symmetric Dirichlet {} (4 = isometry), ARAP {}",
-                figure(d.symmetric_dirichlet),
-                figure(d.arap)
+                rounded(d.symmetric_dirichlet),
+                rounded(d.arap)
             ),
         ),
     ];
     if d.degenerate > 0 {
-        let text =
-            format!("{} without area left out of these figures", counted(d.degenerate, "triangle"));
-        rows.push(row("", &text));
+        let triangles = counted(d.degenerate, "triangle");
+        rows.push(row("", &format!("{triangles} without area left out of these metrics")));
     }
     rows
 }
 
+/// What is integral.
+pub(crate) fn integers_row(certificate: &IntegerCertificate) -> String {
+    let mut text = format!(
+        "exact across {}, at {}",
+        counted(certificate.exact_edges, "edge"),
+        counted(certificate.integral_cones, "cone")
+    );
+    if certificate.isoline_edges > 0 {
+        text += &format!(
+            ", {} and {}",
+            counted(certificate.integral_corners, "corner"),
+            counted(certificate.isoline_edges, "aligned edge")
+        );
+    }
+    row("integers", &text)
+}
+
+/// Quads, their topology, what was left out, and how they lie to their source.
+pub(crate) fn quad_rows(report: &QuadMeshReport) -> Vec<String> {
+    let (map, quads) = (&report.map, &report.quads);
+    let text = format!(
+        "{:.4} grid cells, {}; made exact by moving UVs by up to {:.1e} grid units",
+        map.uv_area,
+        counted(map.cones.len(), "cone"),
+        map.snapping.largest_change
+    );
+    let mut rows = vec![row("map", &text), row("quads", &quads.count.to_string())];
+    if let Some(topology) = &quads.topology {
+        let text = format!(
+            "{}, {}, {}, Euler characteristic {}",
+            counted(quads.vertices, "vertex"),
+            counted(topology.components, "component"),
+            boundary_text(topology.boundary_loops),
+            topology.euler_characteristic
+        );
+        let irregular = &topology.irregular;
+        let by_valence = irregular.by_valence.iter();
+        let by_valence: Vec<String> =
+            by_valence.map(|(valence, count)| format!("{count} of valence {valence}")).collect();
+        let irregular = match irregular.count {
+            0 => "none".into(),
+            n => format!("{n}: {}", by_valence.join(", ")),
+        };
+        rows.extend([row("manifold", &text), row("irregular", &irregular)]);
+    }
+    if let Some(faults) = &quads.faults {
+        let faults: Vec<String> = faults.0.iter().map(ToString::to_string).collect();
+        rows.extend(listing(&faults, SHOWN_FAULTS).iter().map(|fault| row("fault", fault)));
+    }
+    if quads.trimmed > 0 {
+        rows.push(row(
+            "left out",
+            &format!("{} cut by the boundary", counted(quads.trimmed, "cell")),
+        ));
+    }
+    rows.extend(folds_text(report).map(|text| row("folds", &text)));
+    let moved = report.mended.filter(|untangled| untangled.moved > 0);
+    rows.extend(moved.map(|untangled| {
+        let vertices = counted(untangled.moved, "vertex");
+        row("untangled", &format!("{vertices} of badly shaped quads moved along the surface"))
+    }));
+    rows.extend(report.orientation.iter().map(orientation_row));
+    rows
+}
+
+fn folds_text(report: &QuadMeshReport) -> Option<String> {
+    let folds = report.map.folds.as_ref()?;
+    Some(format!(
+        "the map folds: {} and {} collapsed; {} lost, {} merged",
+        counted(folds.flipped.len(), "flipped face"),
+        folds.collapsed.len(),
+        counted(folds.lost, "cell"),
+        counted(folds.merged, "grid point"),
+    ))
+}
+
+/// What quads lack, and what is wrong with them, as notes and warnings.
+pub(crate) fn quad_warnings(report: &QuadMeshReport) -> Vec<String> {
+    let quads = &report.quads;
+    let mut lines = Vec::new();
+    if quads.trimmed > 0 {
+        lines
+            .push(format!("note: {} cut by the boundary left out", counted(quads.trimmed, "cell")));
+    }
+    if quads.split_vertices > 0 {
+        let vertices = counted(quads.split_vertices, "vertex");
+        lines.push(format!("note: {vertices} added where quads met in a point only"));
+    }
+    lines.extend(folds_text(report).map(|text| format!("warning: {text}")));
+    lines.extend(report.orientation.as_ref().and_then(orientation_warning));
+    lines
+}
+
+fn orientation_warning(orientation: &Orientation) -> Option<String> {
+    let Orientation { inverted, crossed, .. } = *orientation;
+    (inverted + crossed > 0).then(|| {
+        let faces = counted(inverted, "face");
+        format!("warning: {faces} inverted, {crossed} crossed, seen from the surface; more quads may help")
+    })
+}
+
+/// How quads lie to their source.
+pub(crate) fn orientation_row(orientation: &Orientation) -> String {
+    let corners = counted(orientation.turned_corners, "corner");
+    let bent = match orientation.bent {
+        0 => String::new(),
+        n => format!("; {} bent over a thin sheet or sharp edge", counted(n, "face")),
+    };
+    let text = match orientation.inverted + orientation.crossed {
+        0 => format!("no face is inverted; {corners} turned against the source{bent}"),
+        _ => format!(
+            "{} inverted, {} crossed; {corners} turned against the source{bent}",
+            counted(orientation.inverted, "face"),
+            orientation.crossed
+        ),
+    };
+    row("orientation", &text)
+}
+
+/// Topology, shape, distortion and distances of a quad mesh.
+pub(crate) fn quality_rows(report: &QualityReport) -> Vec<String> {
+    let mut rows = quality_topology_rows(report);
+    rows.extend(quality_shape_rows(report));
+    match (&report.distortion, &report.no_layout) {
+        (Some(distortion), _) => rows.extend(distortion_rows(distortion)),
+        (None, Some(reason)) => rows.push(row("distortion", &format!("undefined: {reason}"))),
+        (None, None) => {}
+    }
+    if let Some(compared) = &report.compared {
+        let distance = &compared.distance;
+        let share = |x: f64| {
+            format!("{} ({:.3} % of the diagonal)", rounded(x), 100.0 * x / distance.diagonal)
+        };
+        let both = |max, mean| format!("largest {}, mean {}", rounded(max), rounded(mean));
+        let (to, from) = (&distance.to_source, &distance.from_source);
+        rows.extend([
+            row("source", compared.source.as_deref().unwrap_or_default()),
+            row("Hausdorff", &share(distance.hausdorff)),
+            row("mean", &share(distance.mean)),
+            row("to source", &both(to.max, to.mean)),
+            row("from source", &both(from.max, from.mean)),
+            orientation_row(&compared.orientation),
+        ]);
+    }
+    rows
+}
+
+fn quality_topology_rows(report: &QualityReport) -> Vec<String> {
+    let topology = &report.topology;
+    let polygons = topology.polygons.iter().map(|(&corners, &count)| match corners {
+        3 => counted(count, "triangle"),
+        4 => counted(count, "quad"),
+        n => format!("{count} of {n} corners"),
+    });
+    let polygons: Vec<String> = polygons.collect();
+    let irregular = match topology.n_irregular() {
+        0 => "none".into(),
+        n => {
+            let valences = topology.irregular.iter();
+            let parts = valences.map(|(valence, count)| format!("{count} of valence {valence}"));
+            format!("{n} ({})", parts.collect::<Vec<_>>().join(", "))
+        }
+    };
+    let mut surface = format!("Euler characteristic {}", topology.euler_characteristic);
+    match topology.boundary_edges {
+        0 => surface += ", closed",
+        n => surface += &format!(", {} on the boundary", counted(n, "edge")),
+    }
+    if topology.bad_edges > 0 {
+        surface += &format!(", {} with faces that do not fit", counted(topology.bad_edges, "edge"));
+    }
+    let size = format!("{}, {}", counted(topology.vertices, "vertex"), polygons.join(", "));
+    let mut rows = vec![
+        row("quad mesh", report.input.as_deref().unwrap_or_default()),
+        row("size", &size),
+        row("topology", &surface),
+        row("irregular", &irregular),
+    ];
+    let on_boundary: usize = topology.boundary_vertices.values().sum();
+    if on_boundary > 0 {
+        let vertices = topology.boundary_vertices.iter();
+        let parts =
+            vertices.map(|(&faces, count)| format!("{count} in {}", counted(faces, "face")));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        rows.push(row("boundary", &format!("{}: {parts}", counted(on_boundary, "vertex"))));
+    }
+    rows
+}
+
+fn quality_shape_rows(report: &QualityReport) -> [String; 2] {
+    let (angles, lengths) = (&report.angles, &report.edge_lengths);
+    let mut text = format!(
+        "{:.1} to {:.1} degrees, {:.1} from 90 in the mean",
+        angles.min, angles.max, angles.mean_deviation
+    );
+    if angles.not_convex > 0 {
+        text += &format!("; {} not convex", counted(angles.not_convex, "face"));
+    }
+    if angles.degenerate > 0 {
+        text += &format!("; {} with an edge of no length", counted(angles.degenerate, "face"));
+    }
+    let edges = format!(
+        "{} to {}, mean {}, deviating by {:.1} % of it",
+        rounded(lengths.min),
+        rounded(lengths.max),
+        rounded(lengths.mean),
+        100.0 * lengths.variation
+    );
+    [row("angles", &text), row("edges", &edges)]
+}
+
+/// A table of measures; those that `has_star` get one at the number they are compared by.
+pub(crate) fn measure_table(
+    measures: &[Measurement],
+    has_star: impl Fn(Measure) -> bool,
+) -> Vec<String> {
+    let titles =
+        ["measure", "ideal", "scale", "mean", "maximum", "median", "95%", "99%"].map(str::to_owned);
+    let rows = measures.iter().map(|measured| {
+        let (measure, percentiles) = (measured.measure, &measured.percentiles);
+        let mark = |is_compared: bool, x: f64| {
+            format!("{}{}", rounded(x), if is_compared && has_star(measure) { "*" } else { " " })
+        };
+        let is_scaled =
+            !matches!(measure, Measure::TauTilde | Measure::AsapMax | Measure::Dilatation);
+        table_row([
+            measure.name().to_owned(),
+            rounded(measured.ideal),
+            if is_scaled { rounded(measured.scale) } else { "-".into() },
+            mark(measure.is_mean(), measured.mean),
+            mark(!measure.is_mean(), measured.max),
+            rounded(percentiles.p50),
+            rounded(percentiles.p95),
+            rounded(percentiles.p99),
+        ])
+    });
+    std::iter::once(table_row(titles)).chain(rows).collect()
+}
+
+fn table_row([name, numbers @ ..]: [String; 8]) -> String {
+    let cells: Vec<String> = numbers.iter().map(|cell| format!("{cell:>10}")).collect();
+    format!("{name:<20}{}", cells.join(" "))
+}
+
 /// Names and seconds of all stages.
-pub(crate) fn stages(components: &[ComponentStats]) -> impl Iterator<Item = (&'static str, f64)> {
-    components.iter().flat_map(|c| &c.stages).map(|lap| (lap.stage.name(), lap.seconds))
+pub(crate) fn stages(components: &[ComponentStats]) -> Vec<(&'static str, f64)> {
+    let laps = components.iter().flat_map(|c| &c.stages);
+    laps.map(|lap| (lap.stage.name(), lap.seconds)).collect()
 }
 
 /// Time and memory, and what the named parts took in all.
-pub(crate) fn cost_row(cost: &Cost, parts: impl Iterator<Item = (&'static str, f64)>) -> String {
+pub(crate) fn cost_row(cost: &Cost, parts: &[(&'static str, f64)]) -> String {
     let mut stages: Vec<(&'static str, f64)> = Vec::new();
-    for (name, lap) in parts {
+    for &(name, lap) in parts {
         match stages.iter_mut().find(|(known, _)| *known == name) {
             Some((_, seconds)) => *seconds += lap,
             None => stages.push((name, lap)),
@@ -227,4 +484,24 @@ pub(crate) fn cost_row(cost: &Cost, parts: impl Iterator<Item = (&'static str, f
         text += &format!(", {} MB", bytes.div_ceil(1_000_000));
     }
     row("time", &text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faulty_quads_are_reported() {
+        let mut orientation = Orientation::default();
+        (orientation.bent, orientation.turned_corners) = (1, 3);
+        assert_eq!(orientation_warning(&orientation), None);
+        let text = orientation_row(&orientation);
+        assert!(text.ends_with(
+            "no face is inverted; 3 corners turned against the source; 1 face bent over a thin sheet or sharp edge"
+        ));
+        (orientation.inverted, orientation.crossed) = (2, 1);
+        let warning = orientation_warning(&orientation);
+        assert!(warning.is_some_and(|text| text.contains("2 faces inverted, 1 crossed")));
+        assert!(orientation_row(&orientation).contains("2 faces inverted, 1 crossed"));
+    }
 }

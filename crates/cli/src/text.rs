@@ -1,6 +1,7 @@
 //! Text for people.
 
-use crate::outcome::Failure;
+use crate::failure::Failure;
+pub(crate) use seamstress::words::{counted, rounded};
 use std::io::{ErrorKind, Write};
 
 /// Prints lines on standard output. A reader that has gone away is no fault.
@@ -9,40 +10,16 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let written = writeln!(out, "{text}").and_then(|()| out.flush());
     match written {
         Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Output { path: "to standard output".into(), cause })
+            Err(Failure::Usage(format!("cannot write to standard output: {cause}")))
         }
         _ => Ok(()),
     }
 }
 
 /// Prints lines on standard error, if anyone reads it.
-pub(crate) fn tell(text: &str) {
+pub(crate) fn report(text: &str) {
     // There is no better place to report that this fails.
     let _ = writeln!(std::io::stderr().lock(), "{text}");
-}
-
-/// "1 face", "2 faces".
-pub(crate) fn counted(count: usize, noun: &str) -> String {
-    match (count, noun.strip_suffix("ex")) {
-        (1, _) => format!("1 {noun}"),
-        (_, Some(stem)) => format!("{count} {stem}ices"),
-        (_, None) => format!("{count} {noun}s"),
-    }
-}
-
-/// A number with about four digits.
-pub(crate) fn figure(x: f64) -> String {
-    if x.is_nan() {
-        "undefined".into()
-    } else if x.is_infinite() {
-        "infinite".into()
-    } else if x == 0.0 {
-        "0".into()
-    } else if (0.001..1e5).contains(&x.abs()) {
-        format!("{x:.4}")
-    } else {
-        format!("{x:.2e}")
-    }
 }
 
 /// A row of a summary: a label and its text.
@@ -50,17 +27,60 @@ pub(crate) fn row(label: &str, text: &str) -> String {
     format!("{label:<13}{text}")
 }
 
+/// The first lines, and how many more there are.
+pub(crate) fn listing(lines: &[String], limit: usize) -> Vec<String> {
+    let more = lines.len().saturating_sub(limit);
+    let more = (more > 0).then(|| format!("and {more} more"));
+    lines.iter().take(limit).cloned().chain(more).collect()
+}
+
+/// A text of the library with its options and calls as they are spelled here: `cone_bias` becomes `--cone-bias`.
+pub(crate) fn as_options(text: &str) -> String {
+    let mut parts = text.split('`');
+    let mut out: String = parts.next().unwrap_or_default().into();
+    while let Some(quoted) = parts.next() {
+        let command = COMMANDS.iter().find(|(call, _)| *call == quoted);
+        let name = match command {
+            Some((_, command)) => (*command).into(),
+            None if OPTIONS.contains(&quoted) => format!("--{}", quoted.replace('_', "-")),
+            None => quoted.into(),
+        };
+        out += &format!("`{name}`{}", parts.next().unwrap_or_default());
+    }
+    out
+}
+
+/// Options of the library that its messages name.
+const OPTIONS: [&str; 12] = [
+    "allow_flips",
+    "alignment_tolerance",
+    "best_effort",
+    "cone_bias",
+    "exact",
+    "features_strict",
+    "free_cones",
+    "pictures",
+    "repair",
+    "rounding",
+    "time_limit",
+    "tolerance",
+];
+
+/// Calls of the library that its messages name, and the commands that make them.
+const COMMANDS: [(&str, &str); 3] = [
+    ("inspect", "seamstress check"),
+    ("integer_map", "seamstress integer"),
+    ("parametrize", "seamstress map"),
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_nouns() {
-        assert_eq!(counted(1, "vertex"), "1 vertex");
-        assert_eq!(counted(3, "vertex"), "3 vertices");
-        assert_eq!(counted(0, "face"), "0 faces");
-        assert_eq!(figure(f64::INFINITY), "infinite");
-        assert_eq!(figure(2.345_67), "2.3457");
-        assert_eq!(figure(1.234e-12), "1.23e-12");
+    fn options_are_spelled_as_arguments() {
+        let text = "try another `cone_bias`, or `l` elements";
+        assert_eq!(as_options(text), "try another `--cone-bias`, or `l` elements");
+        assert_eq!(as_options("`inspect` tells"), "`seamstress check` tells");
     }
 }

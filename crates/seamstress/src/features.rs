@@ -13,7 +13,7 @@ use seamstress_parametrize::{
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Faulty names of a source that its error lists.
@@ -35,6 +35,16 @@ pub enum FeatureSource {
     Pairs(PathBuf),
     /// A `.sharp` file of QuadWild: `sharp:FILE`.
     Sharp(PathBuf),
+}
+
+impl FeatureSource {
+    /// The file it is read from, other than that of the surface.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Pairs(file) | Self::Sharp(file) => Some(file),
+            Self::Angle(_) | Self::Boundary | Self::Lines | Self::Edges(_) => None,
+        }
+    }
 }
 
 impl FromStr for FeatureSource {

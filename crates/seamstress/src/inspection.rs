@@ -185,7 +185,7 @@ impl Inspection {
         );
         let hint = match self.is_repairable {
             true => "all of them can be repaired: add `repair`",
-            false => "`repair` cannot mend all of them; a check lists them all",
+            false => "`repair` cannot mend all of them; `inspect` lists them all",
         };
         Error::new(ErrorKind::NotASurface, message)
             .at_stage(Some(Stage::Check))

@@ -62,10 +62,13 @@ pub use report::{
 };
 pub use surface::Surface;
 
+#[cfg(feature = "io")]
+pub use seamstress_io::{AtomicFile, Format};
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
+pub use seamstress_parametrize::mixed_integer::MixedIntegerStats;
 pub use seamstress_parametrize::quality::Measure;
 pub use seamstress_parametrize::{
-    Alignment, ComponentStats, Objective, RelayoutStats, ReleasedFeature, Stretch,
+    Alignment, ComponentStats, ConicStats, Objective, RelayoutStats, ReleasedFeature, Stretch,
 };
 pub use seamstress_quads::extract::SurfacePoint;
 pub use seamstress_quads::{IrregularVertex, quality::Orientation};

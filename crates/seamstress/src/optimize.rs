@@ -185,9 +185,8 @@ impl Surface {
                 None => lay_out_disk(mesh, positions, &settings, &mut observe),
             };
             let solution = made.map_err(|cause| match cause {
-                cause if cause.is_not_a_disk() => {
-                    Error::options(cause.to_string()).with_hint("give a seamless map to start from")
-                }
+                cause if cause.is_not_a_disk() => Error::options(cause.to_string())
+                    .with_hint("give a seamless map to start from, as made by `parametrize`"),
                 cause => self.no_map(&cause),
             })?;
             let certify =

@@ -412,7 +412,7 @@ impl Surface {
                 let text =
                     format!("not an integer-grid map to within {tolerance} grid units:\n  {lines}");
                 error(text).with_hint(match faults.is_seamless() {
-                    true => "the map is seamless, but not an integer-grid map; make it one first",
+                    true => "the map is seamless, but not an integer-grid map; `integer_map` makes it one",
                     false => "a map of few digits may need a larger `tolerance`",
                 })
             }

@@ -83,6 +83,11 @@ impl Measure {
         }
     }
 
+    /// Whether maps are compared by its mean, not by its maximum.
+    pub fn is_mean(self) -> bool {
+        self.aggregate() == Aggregate::Mean
+    }
+
     /// The value of a triangle with signed singular values `s1 >= |s2|`.
     ///
     /// A flipped or collapsed triangle (`s2 <= 0`) is infinitely distorted for tau, the symmetric Dirichlet

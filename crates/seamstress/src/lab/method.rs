@@ -87,7 +87,11 @@ pub struct MethodOptions {
 }
 
 impl MethodOptions {
-    fn validate(&self) -> Result<(), Error> {
+    /// Checks every option.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
+    pub fn validate(&self) -> Result<(), Error> {
         self.map.validate()?;
         self.start.validate()?;
         let has_features = !self.map.features.is_none();

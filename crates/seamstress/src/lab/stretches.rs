@@ -1,15 +1,23 @@
 //! Files of wanted stretches.
 
-use crate::outcome::Failure;
+use crate::error::{Error, ErrorKind, Stage};
 use seamstress_parametrize::Stretch;
 use std::fs;
 use std::path::Path;
 
 /// Reads five numbers per line: a direction in space, and the stretch along and across it. Empty lines and
 /// those that start with `#` do not count.
-pub(crate) fn read_stretches(path: &Path) -> Result<Vec<Stretch>, Failure> {
-    let bad = |text: String| Failure::BadStretches { file: path.to_owned(), text };
-    let text = fs::read_to_string(path).map_err(|error| bad(error.to_string()))?;
+///
+/// # Errors
+/// [`ErrorKind::BadStart`], naming the line.
+pub fn read_stretches(path: impl AsRef<Path>) -> Result<Vec<Stretch>, Error> {
+    let path = path.as_ref();
+    let bad = |text: String| {
+        Error::new(ErrorKind::BadStart, text)
+            .at_stage(Some(Stage::Files))
+            .of(Some(&path.display().to_string()))
+    };
+    let text = fs::read_to_string(path).map_err(|cause| bad(cause.to_string()))?;
     let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     let wanted = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let parse = |(number, line): (usize, &str)| {

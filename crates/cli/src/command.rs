@@ -1,0 +1,185 @@
+//! What all commands have in common, and how one is run.
+
+use crate::args::RunArgs;
+use crate::failure::{Failure, Status};
+use crate::job::{Cost, Job};
+use crate::output::{Plan, Target};
+use crate::summary;
+use crate::text::{self, listing, row};
+use seamstress::{
+    AtomicFile, Context, Error, Inspection, Surface, SurfaceOptions, listing as lines,
+};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A command: what it reads and writes, and the calls of the library in between.
+pub(crate) trait Command: Clone + Send + 'static {
+    /// Its name in reports.
+    const NAME: &'static str;
+    /// The work done, and nothing written yet.
+    type Product: Send + 'static;
+
+    /// Threads, limits, and what is printed.
+    fn run_args(&self) -> RunArgs;
+
+    /// The file that messages are about.
+    fn input(&self) -> &Path;
+
+    /// The files that it writes, checked against those that it reads.
+    ///
+    /// # Errors
+    /// If an output would replace an input or another output, or cannot be written.
+    fn plan(&self) -> Result<Plan, Failure>;
+
+    /// Does the work.
+    fn make(&self, session: &Session) -> Result<Self::Product, Failure>;
+
+    /// The pictures among its files, in their order.
+    fn pictures(&self, _: &Self::Product) -> Result<Vec<Vec<u8>>, Error> {
+        Ok(Vec::new())
+    }
+
+    /// Writes a file that is neither picture nor report.
+    fn write(&self, _: &Self::Product, _: &Target, _: &mut AtomicFile) -> io::Result<()> {
+        Ok(())
+    }
+
+    /// The report, to which the command, its files and its cost are added.
+    fn report(&self, product: &Self::Product) -> Value;
+
+    /// The rows of the summary.
+    fn summary(&self, product: &Self::Product) -> Vec<String>;
+
+    /// Seconds by stage, for the summary; none for a command that takes no time.
+    fn stages(&self, _: &Self::Product) -> Option<Vec<(&'static str, f64)>> {
+        None
+    }
+
+    /// How the run ends.
+    fn status(&self, _: &Self::Product) -> Status {
+        Status::Done
+    }
+}
+
+/// What the work of a command needs to know of its run.
+pub(crate) struct Session {
+    context: Context,
+    quiet: bool,
+}
+
+impl Session {
+    /// Reads a mesh, and reports what was found and done on reading it.
+    pub(crate) fn inspect(
+        &self,
+        path: &Path,
+        options: &SurfaceOptions,
+    ) -> Result<Inspection, Failure> {
+        let inspection = Inspection::read(path, options)?;
+        self.report_findings(&inspection);
+        Ok(inspection)
+    }
+
+    /// Reads a surface.
+    pub(crate) fn open(&self, path: &Path, options: &SurfaceOptions) -> Result<Surface, Failure> {
+        self.surface(self.inspect(path, options)?)
+    }
+
+    /// The surface of what was read.
+    pub(crate) fn surface(&self, inspection: Inspection) -> Result<Surface, Failure> {
+        Ok(inspection.surface()?.with_context(self.context.clone()))
+    }
+
+    /// Notes, warnings and repairs, on standard error.
+    pub(crate) fn report_findings(&self, inspection: &Inspection) {
+        let report = inspection.report();
+        for note in &report.notes {
+            self.report(&format!("note: {note}"));
+        }
+        for repair in listing(&report.repairs, SHOWN_REPAIRS) {
+            self.report(&format!("repair: {repair}"));
+        }
+        if !report.repairs.is_empty() {
+            self.report("note: the result is of the repaired mesh");
+        }
+        for warning in lines(&report.warnings, SHOWN_WARNINGS) {
+            self.report(&format!("warning: {warning}"));
+        }
+    }
+
+    /// A line on standard error, unless the run is quiet.
+    pub(crate) fn report(&self, line: &str) {
+        if !self.quiet {
+            text::report(line);
+        }
+    }
+}
+
+/// Warnings of each kind that are shown; the report has them all.
+const SHOWN_WARNINGS: usize = 5;
+/// Repairs that are shown; the report has them all.
+const SHOWN_REPAIRS: usize = 20;
+
+/// Plans, works, writes, and prints the report or the summary.
+pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
+    let run = command.run_args();
+    let job = Job::new(run);
+    let plan = command.plan()?;
+    let input = command.input().display().to_string();
+    let (owned, session) = (command.clone(), Session { context: job.context(), quiet: run.quiet });
+    let product = job.supervise(&input, move || owned.make(&session))?;
+
+    let mut pictures = command.pictures(&product)?.into_iter();
+    let cost = job.cost();
+    let report = report_text(command, &product, &plan, cost);
+    let mut batch = plan.begin()?;
+    for target in &plan.targets {
+        batch.write(&target.path, |file| {
+            if target.kind.is_picture() {
+                file.write_all(&pictures.next().unwrap_or_default())
+            } else if target.kind.is_report() {
+                writeln!(file, "{report}")
+            } else {
+                command.write(&product, target, file)
+            }
+        })?;
+    }
+    job.check_interrupt(&input)?;
+    batch.commit()?;
+    match (run.json, run.quiet) {
+        (true, _) => text::print(&report)?,
+        (false, true) => {}
+        (false, false) => text::print(&summary_text(command, &product, &plan, &cost))?,
+    }
+    Ok(command.status(&product))
+}
+
+fn report_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: Cost) -> String {
+    let run = command.run_args();
+    let mut value = command.report(product);
+    value["command"] = C::NAME.into();
+    value["run"] = json!({
+        "time_limit": run.time_limit.map(|limit| limit.as_secs_f64()),
+        "threads": run.threads,
+    });
+    value["files"] = json!(plan.targets);
+    value["cost"] = json!(cost);
+    serde_json::to_string_pretty(&value).unwrap_or_default()
+}
+
+fn summary_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: &Cost) -> String {
+    let mut rows = command.summary(product);
+    rows.extend(command.stages(product).map(|stages| summary::cost_row(cost, &stages)));
+    let names = plan.targets.iter().rev().map(|target| target.path.display().to_string());
+    let names: Vec<String> = names.collect();
+    if !names.is_empty() {
+        rows.push(row("written", &names.join(", ")));
+    }
+    rows.join("\n")
+}
+
+/// A report of the library as JSON.
+pub(crate) fn to_json(report: &impl Serialize) -> Value {
+    serde_json::to_value(report).unwrap_or_default()
+}

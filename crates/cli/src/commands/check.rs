@@ -1,0 +1,311 @@
+//! `seamstress check`.
+
+use super::{inputs, targets};
+use crate::args::{FeatureArgs, RunArgs, after_help, not_negative};
+use crate::command::{Command, Session, to_json};
+use crate::failure::{Failure, Status};
+use crate::output::{Kind, Plan};
+use crate::summary;
+use crate::text::{counted, row};
+use seamstress::{
+    CertifyOptions, Error, FeatureCurves, Finding, Inspection, MapFile, Severity, Surface,
+    SurfaceOptions, Verdict, listing,
+};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress check bunny.ply
+  seamstress check bunny.ply bunny.obj
+  seamstress check bunny.ply other_program.obj --tolerance 1e-5
+  seamstress check part.obj --features angle:40 --align-boundary --picture part.png
+  seamstress check part.obj part_map.obj --features sharp:part.sharp
+  seamstress check scan.stl --json | jq '.faults[].message'";
+
+/// Faults of each kind that are printed.
+const SHOWN: usize = 20;
+/// An angle to an axis, in degrees, that numbers of few digits may explain.
+const FEW_DIGITS: f64 = 0.01;
+
+/// List the faults of a mesh, or certify a map
+///
+/// With a mesh alone: its size, its topology, and everything that keeps it from being mapped. With a
+/// map as well: whether the map has the mesh's vertices and faces and is seamless, and its distortion;
+/// or else everything that is wrong with it. With features: their curves and corners, and whether the
+/// map has them on its grid lines. Vertices, faces and components are counted from 0.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = after_help(EXAMPLES))]
+pub(crate) struct CheckArgs {
+    /// The mesh: OBJ, OFF, PLY or STL
+    mesh: PathBuf,
+
+    /// A map of the mesh: an OBJ file with a texture coordinate at every corner
+    #[arg(value_name = "MAP.obj")]
+    map: Option<PathBuf>,
+
+    #[command(flatten)]
+    surface: SurfaceOptions,
+
+    /// How far the sides of a seam may be apart, in edge lengths of the map; foreign maps of few digits
+    /// need more [default: 1e-9]
+    #[arg(long, value_name = "X", value_parser = not_negative, requires = "map")]
+    tolerance: Option<f64>,
+
+    #[command(flatten)]
+    features: FeatureArgs,
+
+    /// How far a feature may be off the axes of the map, in degrees; foreign maps of few digits need more
+    /// [default: 1e-9]
+    #[arg(long, value_name = "DEGREES", value_parser = not_negative, requires = "map")]
+    alignment_tolerance: Option<f64>,
+
+    /// Draw the mesh with its features to this PNG file
+    #[arg(long, value_name = "FILE.png", conflicts_with = "map")]
+    picture: Option<PathBuf>,
+
+    /// Print everything as JSON on standard output, with all faults
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was found.
+pub(crate) struct Checked {
+    inspection: Inspection,
+    /// The surface, if it is one, with its features.
+    surface: Option<(Surface, Option<FeatureCurves>)>,
+    map: Option<CheckedMap>,
+}
+
+struct CheckedMap {
+    differences: Vec<Finding>,
+    /// Of maps whose faces are those of the mesh.
+    verdict: Option<Verdict>,
+}
+
+impl CheckArgs {
+    fn options(&self) -> CertifyOptions {
+        let mut options = CertifyOptions::default().features(self.features.features());
+        options.tolerance = self.tolerance.unwrap_or(options.tolerance);
+        options.alignment_tolerance =
+            self.alignment_tolerance.unwrap_or(options.alignment_tolerance);
+        options
+    }
+
+    fn check_map(&self, surface: &Surface, path: &Path) -> Result<CheckedMap, Failure> {
+        let map = MapFile::read(path)?;
+        let differences = map.differences(surface);
+        let verdict = match map.require_faces_of(surface) {
+            Ok(()) => Some(surface.certify_with(map.uvs(), map.face_uvs(), &self.options())?),
+            Err(_) => None,
+        };
+        Ok(CheckedMap { differences, verdict })
+    }
+}
+
+impl CheckedMap {
+    fn is_certified(&self) -> bool {
+        self.differences.is_empty() && self.verdict.as_ref().is_some_and(|v| v.certified)
+    }
+
+    fn is_passed(&self) -> bool {
+        self.is_certified() && self.verdict.as_ref().is_some_and(Verdict::is_passed)
+    }
+
+    fn violations(&self) -> Vec<Finding> {
+        let found = self.verdict.iter().flat_map(|verdict| &verdict.violations);
+        self.differences.iter().chain(found).cloned().collect()
+    }
+
+    fn json(&self, path: &Path) -> Value {
+        let mut value = self.verdict.as_ref().map_or_else(|| json!({}), to_json);
+        let is_aligned = self.verdict.as_ref().and_then(|verdict| verdict.aligned);
+        if !self.is_certified() {
+            for gone in ["certificate", "cones", "seams", "aligned", "alignment"] {
+                value.as_object_mut().map(|fields| fields.remove(gone));
+            }
+        } else if is_aligned == Some(false) {
+            value["alignment"] = json!({ "violations": value["alignment_violations"] });
+        }
+        for gone in ["alignment_violations", "features"] {
+            value.as_object_mut().map(|fields| fields.remove(gone));
+        }
+        value["file"] = path.to_string_lossy().into();
+        value["certified"] = self.is_certified().into();
+        value["violations"] = json!(self.violations());
+        value
+    }
+
+    fn rows(&self) -> Vec<String> {
+        let verdict = self.verdict.as_ref();
+        let mut rows: Vec<String> =
+            verdict.iter().flat_map(|v| summary::distortion_rows(&v.distortion)).collect();
+        if !self.is_certified() {
+            let violations = self.violations();
+            rows.extend(violation_rows(&violations));
+            rows.extend(tolerance_row(&violations));
+            let count = counted(violations.len(), "violation");
+            let text = format!("failed: {count} (elements counted from 0)");
+            rows.push(row("certificate", &text));
+            return rows;
+        }
+        let Some(verdict) = verdict else { return rows };
+        if let (Some(cones), Some(certificate)) = (&verdict.cones, &verdict.certificate) {
+            rows.extend(summary::certificate_rows(cones, certificate));
+        }
+        rows.extend(verdict.alignment.iter().map(summary::alignment_row));
+        if verdict.aligned == Some(false) {
+            let violations = &verdict.alignment_violations;
+            rows.extend(violation_rows(violations));
+            rows.extend(off_axis_row(violations));
+            let count = counted(violations.len(), "violation");
+            rows.push(row("alignment", &format!("failed: {count}")));
+        }
+        rows
+    }
+}
+
+impl Command for CheckArgs {
+    const NAME: &'static str = "check";
+    type Product = Checked;
+
+    fn run_args(&self) -> RunArgs {
+        RunArgs::quick(self.json)
+    }
+
+    fn input(&self) -> &Path {
+        &self.mesh
+    }
+
+    fn plan(&self) -> Result<Plan, Failure> {
+        let files = targets(Kind::Picture, &self.picture);
+        Plan::new(&inputs(&self.mesh, self.features.files()), None, files)
+    }
+
+    fn make(&self, session: &Session) -> Result<Checked, Failure> {
+        let inspection = Inspection::read(&self.mesh, &self.surface)?;
+        if self.map.is_none() && !inspection.is_surface() {
+            return Ok(Checked { inspection, surface: None, map: None });
+        }
+        let surface = session.surface(inspection.clone())?;
+        let features = self.features.features();
+        let curves = match features.is_none() {
+            true => None,
+            false => Some(surface.features(&features)?),
+        };
+        let map = self.map.as_ref().map(|path| self.check_map(&surface, path)).transpose()?;
+        Ok(Checked { inspection, surface: Some((surface, curves)), map })
+    }
+
+    fn pictures(&self, checked: &Checked) -> Result<Vec<Vec<u8>>, Error> {
+        let draw =
+            |(surface, curves): &(Surface, Option<FeatureCurves>)| surface.picture(curves.as_ref());
+        checked.surface.iter().filter(|_| self.picture.is_some()).map(draw).collect()
+    }
+
+    fn report(&self, checked: &Checked) -> Value {
+        let options = self.options();
+        let mut value = json!({
+            "seamstress": seamstress::VERSION,
+            "options": {
+                "repair": self.surface.repair,
+                "tolerance": options.tolerance,
+                "features": options.features,
+                "alignment_tolerance": options.alignment_tolerance,
+            },
+            "input": checked.inspection.report(),
+        });
+        let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref()).next();
+        if let Some(curves) = curves {
+            value["features"] = to_json(curves.report());
+        }
+        match (&checked.map, &self.map) {
+            (Some(map), Some(path)) => value["map"] = map.json(path),
+            _ => {
+                value["faults"] = json!(checked.inspection.findings());
+                value["is_mesh"] = checked.inspection.is_surface().into();
+                value["is_repairable"] = checked.inspection.is_repairable().into();
+            }
+        }
+        value
+    }
+
+    fn summary(&self, checked: &Checked) -> Vec<String> {
+        let inspection = &checked.inspection;
+        let mut rows = summary::surface_rows(inspection.report());
+        if let (Some(map), Some(path)) = (&checked.map, &self.map) {
+            let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
+            rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
+            rows.push(row("map", &path.display().to_string()));
+            rows.extend(map.rows());
+            return rows;
+        }
+        rows.extend(summary::size_rows(inspection.report()));
+        let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
+        rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
+        let notes = &inspection.report().notes;
+        rows.extend(notes.iter().map(|note| row("note", note)));
+        let repairs = &inspection.report().repairs;
+        rows.extend(repairs.iter().map(|repair| row("repair", repair)));
+        for (severity, label) in [(Severity::Warning, "warning"), (Severity::Error, "fault")] {
+            let found = inspection.findings().iter().filter(|f| f.severity == severity);
+            rows.extend(listing(found, SHOWN).iter().map(|line| row(label, line)));
+        }
+        rows.push(row("verdict", &verdict_text(inspection)));
+        rows
+    }
+
+    fn status(&self, checked: &Checked) -> Status {
+        let is_passed = match &checked.map {
+            Some(map) => map.is_passed(),
+            None => checked.inspection.is_surface(),
+        };
+        if is_passed { Status::Done } else { Status::BadInput }
+    }
+}
+
+fn verdict_text(inspection: &Inspection) -> String {
+    let count = |severity| inspection.findings().iter().filter(|f| f.severity == severity).count();
+    let mut text = match (count(Severity::Error), inspection.is_repairable()) {
+        (0, _) => "a mesh that can be mapped".into(),
+        (n, true) => format!("not a mesh; `--repair` can mend its {}", counted(n, "fault")),
+        (n, false) => format!("not a mesh: {}", counted(n, "fault")),
+    };
+    match count(Severity::Warning) {
+        0 => {}
+        n => text += &format!(", {}", counted(n, "warning")),
+    }
+    if !inspection.findings().is_empty() {
+        text += " (elements counted from 0)";
+    }
+    text
+}
+
+fn violation_rows(violations: &[Finding]) -> Vec<String> {
+    listing(violations, SHOWN).iter().map(|line| row("violation", line)).collect()
+}
+
+/// The largest value of a number that violations of a kind have.
+fn worst(violations: &[Finding], kind: &str, number: &str) -> Option<f64> {
+    let of_kind = violations.iter().filter(|violation| violation.kind == kind);
+    of_kind.filter_map(|v| v.details.get(number)?.as_f64()).max_by(f64::total_cmp)
+}
+
+/// How far the worst seam is open, and what that may come from.
+fn tolerance_row(violations: &[Finding]) -> Option<String> {
+    let worst = worst(violations, "open-seam", "residual")?;
+    let text = format!(
+        "open by up to {worst:.1e} edge lengths; maps written with few digits need `--tolerance`"
+    );
+    Some(row("seams", &text))
+}
+
+/// How far the worst feature is off, and what that may come from.
+fn off_axis_row(violations: &[Finding]) -> Option<String> {
+    let worst = worst(violations, "off-axis", "degrees")?;
+    let mut text = format!("off the axes by up to {worst:.1e} degrees");
+    if worst < FEW_DIGITS {
+        text += "; maps written with few digits need `--alignment-tolerance`";
+    }
+    Some(row("features", &text))
+}

@@ -1,0 +1,120 @@
+//! `seamstress extract`.
+
+use super::{inputs, targets};
+use crate::args::{RunArgs, after_help};
+use crate::command::{Command, Session, to_json};
+use crate::failure::Failure;
+use crate::output::{Kind, Plan, Target};
+use crate::summary;
+use seamstress::{
+    AtomicFile, Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh,
+};
+use serde_json::Value;
+use std::io;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress extract grid.obj -o quads.obj
+  seamstress extract grid.obj -o quads.ply --picture quads.png --report quads.json
+  seamstress extract grid.obj -o quads.obj --smooth 10
+  seamstress extract grid.obj -o quads.obj --features angle:40
+  seamstress extract other_program.obj -o quads.obj --best-effort";
+
+/// Extract the quad mesh of an integer-grid map
+///
+/// Every unit square of the map becomes a quad. The map may come from any program: an OBJ file with
+/// positions, triangles and texture coordinates in grid units. Small inexactness is removed and reported.
+/// Badly shaped quads are untangled along the surface. Cells that a boundary cuts are left out.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = after_help(EXAMPLES))]
+pub(crate) struct ExtractArgs {
+    /// The integer-grid map: an OBJ file with positions, triangles and a texture coordinate at every corner
+    #[arg(value_name = "MAP.obj")]
+    map: PathBuf,
+
+    /// Write the quad mesh to this OBJ or PLY file, replacing an existing one
+    #[arg(short, long, value_name = "QUADS")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    options: ExtractionOptions,
+
+    /// Keep vertices on these feature edges; may be given several times
+    ///
+    /// They are those that the map aligns, from the sources of `quad`: angle:DEGREES, boundary, lines,
+    /// edges:A-B,..., pairs:FILE or sharp:FILE. Where the map has a vertex of the quads on one, that slides
+    /// along it when quads are untangled or smoothed.
+    #[arg(long, value_name = "SOURCE")]
+    features: Vec<FeatureSource>,
+
+    /// Write everything about the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+
+    /// Write a picture of the quad mesh with its irregular vertices to this PNG file
+    #[arg(long, value_name = "FILE.png")]
+    picture: Option<PathBuf>,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+impl Command for ExtractArgs {
+    const NAME: &'static str = "extract";
+    type Product = QuadMesh;
+
+    fn run_args(&self) -> RunArgs {
+        self.run
+    }
+
+    fn input(&self) -> &Path {
+        &self.map
+    }
+
+    fn plan(&self) -> Result<Plan, Failure> {
+        let mut files = targets(Kind::Picture, &self.picture);
+        files.extend(targets(Kind::Report, &self.report));
+        files.extend(targets(Kind::Quads, [&self.output]));
+        let features = self.features.iter().filter_map(FeatureSource::file);
+        Plan::new(&inputs(&self.map, features), None, files)
+    }
+
+    fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {
+        let map = MapFile::read(&self.map)?;
+        let inspection = map.inspect();
+        session.report_findings(&inspection);
+        let surface = session.surface(inspection)?;
+        let features = self.features.iter().cloned().fold(Features::none(), Features::and);
+        let quads = surface.extract_quads(map.uvs(), map.face_uvs(), &features, &self.options)?;
+        summary::quad_warnings(quads.report()).iter().for_each(|line| session.report(line));
+        Ok(quads)
+    }
+
+    fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
+        self.picture.iter().map(|_| quads.picture()).collect()
+    }
+
+    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
+        quads.write_as(&target.path, file)
+    }
+
+    fn report(&self, quads: &QuadMesh) -> Value {
+        let mut value = to_json(quads.report());
+        value["options"] = to_json(&self.options);
+        value["options"]["features"] = to_json(&self.features);
+        value
+    }
+
+    fn summary(&self, quads: &QuadMesh) -> Vec<String> {
+        let report = quads.report();
+        let mut rows = summary::surface_rows(&report.input);
+        rows.extend(report.features.iter().flat_map(summary::feature_rows));
+        rows.extend(summary::quad_rows(report));
+        rows
+    }
+
+    fn stages(&self, _: &QuadMesh) -> Option<Vec<(&'static str, f64)>> {
+        Some(Vec::new())
+    }
+}

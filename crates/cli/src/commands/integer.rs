@@ -1,0 +1,166 @@
+//! `seamstress integer`.
+
+use super::{draw_map, inputs, map_pictures, targets};
+use crate::args::{FeatureArgs, RunArgs, SizeArgs, after_help, not_negative};
+use crate::command::{Command, Session, to_json};
+use crate::failure::Failure;
+use crate::output::{Kind, Plan, Target};
+use crate::summary;
+use crate::text::{rounded, row};
+use seamstress::{
+    AtomicFile, CertifyOptions, Error, GridRounding, IntegerGridMap, IntegerMapOptions,
+    IntegerStats, MapFile, MapOptions, SurfaceOptions, TextureOptions,
+};
+use serde_json::{Value, json};
+use std::io;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress integer bunny.ply --quads 5000 -o grid.obj
+  seamstress integer bunny.ply bunny.obj --edge-length 0.02 -o grid.obj
+  seamstress integer part.off --scale 4 -o grid.obj --pictures part
+  seamstress integer part.off --quads 3000 --features angle:40 --align-boundary -o grid.obj
+  seamstress integer part.off --quads 800 -o grid.obj --json | jq .grid";
+
+/// Make an integer-grid map: a seamless map whose unit squares close up over the surface
+///
+/// Rounds a seamless map so that the shifts across all seams and the positions of all cones are whole
+/// numbers, exactly, without flipping a triangle. The grid of unit squares is then a quad mesh of the
+/// surface. Where cones are too close for the grid, it is made finer, and the summary says so. Without a
+/// map the seamless map is made first, as `map` does. Features and boundaries that are aligned come to lie
+/// on lines of the grid; in a map that is given, those that it aligns.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = after_help(EXAMPLES))]
+pub(crate) struct IntegerArgs {
+    /// The mesh: OBJ, OFF, PLY or STL
+    mesh: PathBuf,
+
+    /// A seamless map of the mesh: an OBJ file with a texture coordinate at every corner
+    #[arg(value_name = "MAP.obj")]
+    map: Option<PathBuf>,
+
+    /// Write the integer-grid map to this OBJ file, replacing an existing one
+    #[arg(short, long, value_name = "INT.obj")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    size: SizeArgs,
+
+    /// How the whole numbers are chosen
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = GridRounding::Constrained)]
+    rounding: GridRounding,
+
+    /// Write everything about the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+
+    /// Write front.png, back.png and layout.png to this folder, made if it does not exist
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
+
+    #[command(flatten)]
+    surface: SurfaceOptions,
+
+    #[command(flatten)]
+    texture: TextureOptions,
+
+    #[command(flatten)]
+    features: FeatureArgs,
+
+    #[command(flatten)]
+    method: MapOptions,
+
+    /// How far the sides of a seam may be apart in the map that is read, in edge lengths of that map
+    #[arg(long, value_name = "X", value_parser = not_negative, requires = "map")]
+    tolerance: Option<f64>,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+impl IntegerArgs {
+    fn options(&self) -> IntegerMapOptions {
+        let mut options = IntegerMapOptions::default();
+        (options.size, options.rounding) = (self.size.grid(), self.rounding);
+        options.map(self.method.clone()).features(self.features.features())
+    }
+}
+
+impl Command for IntegerArgs {
+    const NAME: &'static str = "integer";
+    type Product = IntegerGridMap;
+
+    fn run_args(&self) -> RunArgs {
+        self.run
+    }
+
+    fn input(&self) -> &Path {
+        &self.mesh
+    }
+
+    fn plan(&self) -> Result<Plan, Failure> {
+        let mut files = map_pictures(self.pictures.as_ref());
+        files.extend(targets(Kind::Report, &self.report));
+        files.extend(targets(Kind::Map, [&self.output]));
+        let given = self.map.as_deref().into_iter().chain(self.features.files());
+        Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
+    }
+
+    fn make(&self, session: &Session) -> Result<IntegerGridMap, Failure> {
+        let surface = session.open(&self.mesh, &self.surface)?;
+        let options = self.options();
+        let Some(path) = &self.map else {
+            return Ok(surface.integer_map(&options)?);
+        };
+        let map = MapFile::read(path)?;
+        map.require_mesh_of(&surface)?;
+        let default = CertifyOptions::default();
+        let certify = default.clone().tolerance(self.tolerance.unwrap_or(default.tolerance));
+        Ok(surface.integer_map_of(map.uvs(), map.face_uvs(), &certify, &options)?)
+    }
+
+    fn pictures(&self, map: &IntegerGridMap) -> Result<Vec<Vec<u8>>, Error> {
+        draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
+    }
+
+    fn write(&self, map: &IntegerGridMap, _: &Target, file: &mut AtomicFile) -> io::Result<()> {
+        map.write_to(file)
+    }
+
+    fn report(&self, map: &IntegerGridMap) -> Value {
+        let mut value = to_json(map.report());
+        value["seamless_map"] = json!(self.map);
+        value
+    }
+
+    fn summary(&self, map: &IntegerGridMap) -> Vec<String> {
+        let report = map.report();
+        let mut rows = summary::surface_rows(&report.input);
+        rows.extend(report.features.iter().flat_map(summary::feature_rows));
+        rows.push(row("grid", &report.grid.to_string()));
+        rows.extend(summary::distortion_rows(&report.distortion));
+        rows.extend(summary::certificate_rows(&report.cones, &report.certificate));
+        let before = &report.distortion_before;
+        let text = format!(
+            "tau {}, symmetric Dirichlet {}",
+            rounded(before.tau),
+            rounded(before.symmetric_dirichlet)
+        );
+        rows.push(row("seamless map", &text));
+        rows.push(summary::integers_row(&report.integer_certificate));
+        rows.extend(report.features.iter().flat_map(summary::aligned_rows));
+        rows
+    }
+
+    fn stages(&self, map: &IntegerGridMap) -> Option<Vec<(&'static str, f64)>> {
+        let components = &map.report().components;
+        let sum = |part: fn(&IntegerStats) -> f64| components.iter().map(part).sum::<f64>();
+        Some(vec![
+            ("reduction", sum(|c| c.seconds_reduction)),
+            ("rounding", sum(|c| c.seconds_rounding)),
+            ("path", sum(|c| c.seconds_moving)),
+            ("polish", sum(|c| c.seconds_polish)),
+        ])
+    }
+}

@@ -1,0 +1,164 @@
+//! `seamstress map`.
+
+use super::{draw_map, inputs, map_pictures, targets};
+use crate::args::{FeatureArgs, RunArgs, after_help};
+use crate::command::{Command, Session, to_json};
+use crate::failure::Failure;
+use crate::output::{Kind, Plan, Target};
+use crate::summary;
+use crate::text::{as_options, counted, row};
+use seamstress::lab::{LaidOut, MethodOptions};
+use seamstress::{AtomicFile, Error, SurfaceOptions, TextureOptions, write_cones};
+use serde_json::Value;
+use std::io;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress map bunny.ply -o bunny.obj
+  seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
+  seamstress map scan.stl -o scan.obj --repair --time-limit 60
+  seamstress map part.obj -o part_map.obj --features angle:40 --align-boundary
+  seamstress map part.off -o part.obj --json | jq .distortion.tau
+  seamstress lab map eight.off -o eight.obj --field eight.rawfield
+  seamstress lab map eight.off -o eight.obj --cones eight.sing --free-cones
+  seamstress lab map eight.off -o eight.obj --method field --allow-flips
+  seamstress lab map block.off -o block.obj --rounding mixed-integer --batch 800
+
+`seamstress lab map --help` shows all options.";
+
+/// Make a seamless map of a mesh
+///
+/// Reads a mesh, computes a seamless map of low distortion, certifies it and writes it as an OBJ file
+/// with a texture coordinate per corner. Vertices and faces stay as they are and in their order;
+/// polygons are split into triangles, and the corners of an STL file are welded where they coincide.
+/// Files appear only when everything has succeeded.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = after_help(EXAMPLES))]
+pub(crate) struct MapArgs {
+    /// The mesh to map: OBJ, OFF, PLY or STL
+    mesh: PathBuf,
+
+    /// Write the map to this OBJ file, replacing an existing one
+    #[arg(short, long, value_name = "MAP.obj")]
+    output: PathBuf,
+
+    /// Write everything about the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+
+    /// Write front.png, back.png and layout.png to this folder, made if it does not exist
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
+
+    /// Write the cones to this file: vertex (counted from 0) and index in quarters of a turn
+    #[arg(long, value_name = "FILE.sing")]
+    sing: Option<PathBuf>,
+
+    #[command(flatten)]
+    surface: SurfaceOptions,
+
+    #[command(flatten)]
+    features: FeatureArgs,
+
+    #[command(flatten)]
+    method: MethodOptions,
+
+    #[command(flatten)]
+    texture: TextureOptions,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+impl MapArgs {
+    fn options(&self) -> MethodOptions {
+        let mut options = self.method.clone();
+        options.map.features = self.features.features();
+        options
+    }
+}
+
+impl Command for MapArgs {
+    const NAME: &'static str = "map";
+    type Product = LaidOut;
+
+    fn run_args(&self) -> RunArgs {
+        self.run
+    }
+
+    fn input(&self) -> &Path {
+        &self.mesh
+    }
+
+    fn plan(&self) -> Result<Plan, Failure> {
+        self.options().validate().map_err(|error| Failure::Usage(as_options(error.message())))?;
+        let mut files = map_pictures(self.pictures.as_ref());
+        files.extend(targets(Kind::Cones, &self.sing));
+        files.extend(targets(Kind::Report, &self.report));
+        files.extend(targets(Kind::Map, [&self.output]));
+        let given = self.method.start.files().chain(self.features.files());
+        Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
+    }
+
+    fn make(&self, session: &Session) -> Result<LaidOut, Failure> {
+        let surface = session.open(&self.mesh, &self.surface)?;
+        Ok(surface.parametrize_with(&self.options())?)
+    }
+
+    fn pictures(&self, product: &LaidOut) -> Result<Vec<Vec<u8>>, Error> {
+        match product {
+            LaidOut::Certified(map) => {
+                draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
+            }
+            LaidOut::Uncertified(_) => Ok(Vec::new()),
+        }
+    }
+
+    fn write(&self, product: &LaidOut, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
+        match (product, target.kind) {
+            (LaidOut::Certified(map), Kind::Cones) => write_cones(map.cones(), file),
+            (LaidOut::Uncertified(layout), Kind::Cones) => write_cones(layout.cones(), file),
+            (LaidOut::Certified(map), _) => map.write_to(file),
+            (LaidOut::Uncertified(layout), _) => layout.write_to(file),
+        }
+    }
+
+    fn report(&self, product: &LaidOut) -> Value {
+        let mut value = match product {
+            LaidOut::Certified(map) => to_json(map.report()),
+            LaidOut::Uncertified(layout) => to_json(layout.report()),
+        };
+        value["options"] = to_json(&self.options());
+        value
+    }
+
+    fn summary(&self, product: &LaidOut) -> Vec<String> {
+        let map = match product {
+            LaidOut::Certified(map) => map.report(),
+            LaidOut::Uncertified(layout) => {
+                let report = layout.report();
+                let mut rows = summary::surface_rows(&report.input);
+                rows.extend(summary::distortion_rows(&report.distortion));
+                rows.push(row("cones", &counted(report.cones.count, "cone")));
+                let text = format!("none: {}", layout.violations_text());
+                rows.push(row("certificate", &text));
+                return rows;
+            }
+        };
+        let mut rows = summary::surface_rows(&map.input);
+        rows.extend(map.features.iter().flat_map(summary::feature_rows));
+        rows.extend(summary::map_rows(map));
+        rows.extend(summary::mixed_integer_rows(&map.components));
+        rows.extend(map.features.iter().flat_map(summary::aligned_rows));
+        rows
+    }
+
+    fn stages(&self, product: &LaidOut) -> Option<Vec<(&'static str, f64)>> {
+        let components = match product {
+            LaidOut::Certified(map) => &map.report().components,
+            LaidOut::Uncertified(layout) => &layout.report().components,
+        };
+        Some(summary::stages(components))
+    }
+}

@@ -1,0 +1,68 @@
+//! The commands, each with its arguments, its calls of the library and its words.
+
+mod check;
+mod extract;
+mod features;
+mod field;
+mod integer;
+mod layout_quads;
+mod map;
+mod matchings;
+mod measure;
+mod optimize;
+mod quad;
+mod quality;
+
+pub(crate) use check::CheckArgs;
+pub(crate) use extract::ExtractArgs;
+pub(crate) use features::FeaturesArgs;
+pub(crate) use field::FieldArgs;
+pub(crate) use integer::IntegerArgs;
+pub(crate) use layout_quads::LayoutQuadsArgs;
+pub(crate) use map::MapArgs;
+pub(crate) use matchings::MatchingsArgs;
+pub(crate) use measure::MeasureArgs;
+pub(crate) use optimize::OptimizeArgs;
+pub(crate) use quad::QuadArgs;
+pub(crate) use quality::QualityArgs;
+
+use crate::output::{Kind, Target};
+use seamstress::{Error, MapPictures, Measure};
+use std::path::{Path, PathBuf};
+
+/// The files of [`MapPictures`].
+const MAP_PICTURES: [&str; 3] = ["front.png", "back.png", "layout.png"];
+
+/// The pictures of a map in a folder.
+fn map_pictures(folder: Option<&PathBuf>) -> Vec<Target> {
+    let picture = |folder: &PathBuf| {
+        MAP_PICTURES.map(|name| Target::new(Kind::Picture, &folder.join(name))).to_vec()
+    };
+    folder.map(picture).unwrap_or_default()
+}
+
+/// Draws the pictures of a map, if a folder is given for them.
+fn draw_map(
+    folder: Option<&PathBuf>,
+    draw: impl FnOnce() -> Result<MapPictures, Error>,
+) -> Result<Vec<Vec<u8>>, Error> {
+    let Some(_) = folder else { return Ok(Vec::new()) };
+    let pictures = draw()?;
+    Ok(vec![pictures.front, pictures.back, pictures.layout])
+}
+
+/// Files of one kind.
+fn targets<'a>(kind: Kind, paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Target> {
+    paths.into_iter().map(|path| Target::new(kind, path)).collect()
+}
+
+/// The inputs of a run.
+fn inputs<'a>(first: &'a PathBuf, others: impl IntoIterator<Item = &'a Path>) -> Vec<&'a Path> {
+    std::iter::once(first.as_path()).chain(others).collect()
+}
+
+/// The measure of a name that the parser has let pass.
+fn measure_named(name: &str) -> Measure {
+    let named = Measure::ALL.into_iter().find(|measure| measure.name() == name);
+    named.unwrap_or(Measure::Tau)
+}

@@ -1,0 +1,138 @@
+//! `seamstress quad`.
+
+use super::{inputs, targets};
+use crate::args::{FeatureArgs, RunArgs, SizeArgs, after_help};
+use crate::command::{Command, Session, to_json};
+use crate::failure::Failure;
+use crate::output::{Kind, Plan, Target};
+use crate::summary;
+use crate::text::{counted, row};
+use seamstress::{
+    AtomicFile, Error, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
+};
+use serde_json::Value;
+use std::io;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  seamstress quad bunny.ply --quads 5000 -o quads.obj
+  seamstress quad bunny.ply --edge-length 0.02 -o quads.ply --picture quads.png
+  seamstress quad part.off --quads 3000 -o quads.obj --features angle:40 --align-boundary
+  seamstress quad scan.stl --quads 800 -o quads.obj --repair --time-limit 60";
+
+/// Make a quad mesh of a triangle mesh
+///
+/// A seamless map (as by `map`), rounded to an integer-grid map (as by `integer`), whose grid is extracted
+/// (as by `extract`): quads only, an oriented manifold, its irregular vertices the cones of the map.
+/// Creases are followed with `--features`, boundaries with `--align-boundary`; cells that a boundary cuts
+/// are left out.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = after_help(EXAMPLES))]
+pub(crate) struct QuadArgs {
+    /// The mesh: OBJ, OFF, PLY or STL
+    mesh: PathBuf,
+
+    /// Write the quad mesh to this OBJ or PLY file, replacing an existing one
+    #[arg(short, long, value_name = "QUADS")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    size: SizeArgs,
+
+    #[command(flatten)]
+    shape: ShapeOptions,
+
+    /// Write everything about the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+
+    /// Write a picture of the quad mesh with its irregular vertices to this PNG file
+    #[arg(long, value_name = "FILE.png")]
+    picture: Option<PathBuf>,
+
+    #[command(flatten)]
+    surface: SurfaceOptions,
+
+    #[command(flatten)]
+    features: FeatureArgs,
+
+    #[command(flatten)]
+    map: MapOptions,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+impl QuadArgs {
+    fn options(&self) -> QuadOptions {
+        let mut options = QuadOptions::default();
+        (options.size, options.shape, options.map) =
+            (self.size.grid(), self.shape, self.map.clone());
+        options.features(self.features.features())
+    }
+}
+
+impl Command for QuadArgs {
+    const NAME: &'static str = "quad";
+    type Product = QuadMesh;
+
+    fn run_args(&self) -> RunArgs {
+        self.run
+    }
+
+    fn input(&self) -> &Path {
+        &self.mesh
+    }
+
+    fn plan(&self) -> Result<Plan, Failure> {
+        let mut files = targets(Kind::Picture, &self.picture);
+        files.extend(targets(Kind::Report, &self.report));
+        files.extend(targets(Kind::Quads, [&self.output]));
+        Plan::new(&inputs(&self.mesh, self.features.files()), None, files)
+    }
+
+    fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {
+        let surface = session.open(&self.mesh, &self.surface)?;
+        let quads = surface.quad_mesh(&self.options())?;
+        summary::quad_warnings(quads.report()).iter().for_each(|line| session.report(line));
+        Ok(quads)
+    }
+
+    fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
+        self.picture.iter().map(|_| quads.picture()).collect()
+    }
+
+    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
+        quads.write_as(&target.path, file)
+    }
+
+    fn report(&self, quads: &QuadMesh) -> Value {
+        to_json(quads.report())
+    }
+
+    fn summary(&self, quads: &QuadMesh) -> Vec<String> {
+        let report = quads.report();
+        let mut rows = summary::surface_rows(&report.input);
+        rows.extend(report.features.iter().flat_map(summary::feature_rows));
+        rows.extend(report.grid.iter().map(|grid| {
+            let mut text = grid.to_string();
+            if report.manifold_refinements > 0 {
+                let times = counted(report.manifold_refinements, "time");
+                text += &format!("; {times} finer for the quads to be a manifold");
+            }
+            row("grid", &text)
+        }));
+        if report.features.is_some() {
+            rows.extend(report.integer_certificate.iter().map(summary::integers_row));
+        }
+        rows.extend(report.features.iter().flat_map(summary::aligned_rows));
+        rows.extend(report.distortion.iter().flat_map(summary::distortion_rows));
+        rows.extend(summary::quad_rows(report));
+        rows
+    }
+
+    fn stages(&self, _: &QuadMesh) -> Option<Vec<(&'static str, f64)>> {
+        Some(Vec::new())
+    }
+}

@@ -1,0 +1,95 @@
+//! How a run ends: exit codes, and failures with their messages.
+
+use crate::text::as_options;
+use seamstress::{Error, ErrorCategory, ErrorKind};
+use std::fmt;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// The exit codes, as documented in the help.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Status {
+    Done = 0,
+    BadInput = 1,
+    WrongUsage = 2,
+    NoResult = 3,
+    Stopped = 4,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        ExitCode::from(status as u8)
+    }
+}
+
+/// Why a run failed: what, where, and what to do about it.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The library has no result.
+    Library(Error),
+    /// The command line asks for what cannot be.
+    Usage(String),
+    /// Stopped while files were written, or for good.
+    Interrupted { input: String },
+    /// The work did not stop when its time was over.
+    TimeLimit { input: String, limit: Duration },
+    /// The work broke off.
+    Panicked { input: String },
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Library(error)
+    }
+}
+
+impl Failure {
+    pub(crate) fn status(&self) -> Status {
+        match self {
+            Self::Library(error) => match error.kind().category() {
+                ErrorCategory::Input => Status::BadInput,
+                ErrorCategory::Usage => Status::WrongUsage,
+                ErrorCategory::Stopped => Status::Stopped,
+                _ => Status::NoResult,
+            },
+            Self::Usage(_) => Status::WrongUsage,
+            Self::Interrupted { .. } | Self::TimeLimit { .. } => Status::Stopped,
+            Self::Panicked { .. } => Status::NoResult,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Library(error) => {
+                match (error.kind(), error.input()) {
+                    (ErrorKind::Cancelled, Some(input)) => write!(f, "{input}: interrupted")?,
+                    (ErrorKind::Cancelled, None) => f.write_str("interrupted")?,
+                    _ => f.write_str(&as_options(&error.to_string()))?,
+                }
+                let category = error.kind().category();
+                if matches!(category, ErrorCategory::NoResult | ErrorCategory::Stopped) {
+                    f.write_str("\nNothing was written")?;
+                }
+                match error.hint() {
+                    Some(hint) => write!(f, "\nhint: {}", as_options(hint)),
+                    None => Ok(()),
+                }
+            }
+            Self::Usage(text) => f.write_str(text),
+            Self::Interrupted { input } => write!(f, "{input}: interrupted\nNothing was written"),
+            Self::TimeLimit { input, limit } => write!(
+                f,
+                "{input}: the time limit of {} s has passed\nNothing was written\n\
+                 hint: allow more with `--time-limit`",
+                limit.as_secs_f64()
+            ),
+            Self::Panicked { input } => write!(
+                f,
+                "{input}: internal error: the computation broke off\nNothing was written\n\
+                 hint: please report this with the mesh"
+            ),
+        }
+    }
+}
