@@ -3,7 +3,7 @@
 use crate::args::RunArgs;
 use crate::failure::{Failure, Status};
 use crate::job::{Cost, Job};
-use crate::output::{Plan, Target};
+use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{self, listing, row};
 use seamstress::{
@@ -135,14 +135,18 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     let report = report_text(command, &product, &plan, cost);
     let mut batch = plan.begin()?;
     for target in &plan.targets {
-        batch.write(&target.path, |file| {
-            if target.kind.is_picture() {
-                file.write_all(&pictures.next().unwrap_or_default())
-            } else if target.kind.is_report() {
-                writeln!(file, "{report}")
-            } else {
-                command.write(&product, target, file)
-            }
+        let picture = match target.kind {
+            Kind::Picture => match pictures.next() {
+                Some(picture) => picture,
+                // There was nothing to draw.
+                None => continue,
+            },
+            _ => Vec::new(),
+        };
+        batch.write(&target.path, |file| match target.kind {
+            Kind::Picture => file.write_all(&picture),
+            Kind::Report => writeln!(file, "{report}"),
+            _ => command.write(&product, target, file),
         })?;
     }
     job.check_interrupt(&input)?;

@@ -64,8 +64,10 @@ impl fmt::Display for Failure {
         match self {
             Self::Library(error) => {
                 match (error.kind(), error.input()) {
-                    (ErrorKind::Cancelled, Some(input)) => write!(f, "{input}: interrupted")?,
-                    (ErrorKind::Cancelled, None) => f.write_str("interrupted")?,
+                    (ErrorKind::Cancelled, Some(input)) => {
+                        write!(f, "{input}: stopped: interrupted")?
+                    }
+                    (ErrorKind::Cancelled, None) => f.write_str("stopped: interrupted")?,
                     _ => f.write_str(&as_options(&error.to_string()))?,
                 }
                 let category = error.kind().category();
@@ -78,10 +80,12 @@ impl fmt::Display for Failure {
                 }
             }
             Self::Usage(text) => f.write_str(text),
-            Self::Interrupted { input } => write!(f, "{input}: interrupted\nNothing was written"),
+            Self::Interrupted { input } => {
+                write!(f, "{input}: stopped: interrupted\nNothing was written")
+            }
             Self::TimeLimit { input, limit } => write!(
                 f,
-                "{input}: the time limit of {} s has passed\nNothing was written\n\
+                "{input}: stopped: the time limit of {} s has passed\nNothing was written\n\
                  hint: allow more with `--time-limit`",
                 limit.as_secs_f64()
             ),

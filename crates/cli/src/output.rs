@@ -19,16 +19,6 @@ pub(crate) enum Kind {
     Picture,
 }
 
-impl Kind {
-    pub(crate) fn is_picture(self) -> bool {
-        self == Self::Picture
-    }
-
-    pub(crate) fn is_report(self) -> bool {
-        self == Self::Report
-    }
-}
-
 /// A file to be written.
 #[derive(Debug, Clone, serde::Serialize)]
 pub(crate) struct Target {

@@ -251,7 +251,7 @@ impl Error {
 
     pub(crate) fn timed_out(mut self, limit: Duration) -> Self {
         self.0.kind = ErrorKind::TimeLimit;
-        self.0.message = format!("the time limit of {} s has passed", limit.as_secs_f64());
+        self.0.message = format!("stopped: the time limit of {} s has passed", limit.as_secs_f64());
         self.with_hint("allow more with `time_limit`")
     }
 

@@ -132,7 +132,7 @@ impl MapOptions {
 
 /// How fine a grid is to be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "kebab-case")]
 pub enum GridSize {
     /// About so many quads in all.
     Quads(f64),

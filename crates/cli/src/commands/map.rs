@@ -129,7 +129,16 @@ impl Command for MapArgs {
             LaidOut::Certified(map) => to_json(map.report()),
             LaidOut::Uncertified(layout) => to_json(layout.report()),
         };
-        value["options"] = to_json(&self.options());
+        let options = self.options();
+        let mut all = to_json(&options.map);
+        if let (Some(all), Value::Object(rounding)) =
+            (all.as_object_mut(), to_json(&options.rounding))
+        {
+            all.extend(rounding);
+        }
+        all["start"] = to_json(&options.start);
+        all["repair"] = self.surface.repair.into();
+        value["options"] = all;
         value
     }
 

@@ -106,7 +106,7 @@ fn faces_of_a_sharp_file_are_those_of_the_file() {
 fn what_is_no_edge_is_named_by_its_line() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::cube());
-    refuse(&folder, "lines", "needs an OBJ file with `l` elements");
+    refuse(&folder, "lines", "need an OBJ file with `l` elements");
     folder.write("p.txt", "0 1\n\n0 99\n4 4\n");
     refuse(&folder, "pairs:p.txt", "p.txt: not edges of in.obj:\n");
     refuse(
@@ -269,13 +269,13 @@ fn a_map_has_its_features_on_its_axes() {
     let run = folder.expect(0, &[&arguments[..], &aligned].concat());
     assert!(run.stdout.contains("features     36 edges: 18 curves"), "{}", run.stdout);
     assert!(run.stdout.contains("alignment    passed: 36 edges within"), "{}", run.stdout);
-    assert!(!run.stdout.contains("released"), "{}", run.stdout);
+    assert!(!run.stdout.contains("dropped"), "{}", run.stdout);
     let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
     assert_eq!(report["options"]["features"], serde_json::json!(["angle:40"]));
     let found = &report["features"];
     assert_eq!((&found["edges"], &found["kept"]), (&36.into(), &36.into()));
     assert_eq!(
-        (&found["released"], &found["alignment"]["sides"]),
+        (&found["dropped"], &found["alignment"]["sides"]),
         (&serde_json::json!([]), &72.into())
     );
     folder.expect(0, &[&["check", "in.obj", "map.obj"][..], &aligned].concat());
@@ -295,10 +295,10 @@ fn released_features_are_listed_drawn_and_refused_when_strict() {
     assert!(strict.stderr.contains("third feature edge of a triangle"), "{strict:?}");
     assert_eq!(folder.names(), ["in.obj", "p.txt"]);
     let run = folder.expect(0, &[&map[..], &["--report", "r.json", "--pictures", "new"]].concat());
-    assert!(run.stdout.contains("released     "), "{}", run.stdout);
+    assert!(run.stdout.contains("dropped      "), "{}", run.stdout);
     assert!(run.stdout.contains(": third feature edge of a triangle"), "{}", run.stdout);
     let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
-    let released = report["features"]["released"].as_array().unwrap();
+    let released = report["features"]["dropped"].as_array().unwrap();
     assert_eq!(released[0]["reason"], "three-in-triangle");
     assert_eq!(report["features"]["kept"], 3 - released.len());
     // What is kept is aligned, what is released is named.
@@ -358,7 +358,7 @@ fn meshes_of_the_collection_have_their_features_aligned() {
         map("two.obj", "2");
         assert_eq!(folder.read("one.obj"), folder.read("two.obj"));
         let features = &report["features"];
-        let gone = features["released"].as_array().unwrap().len();
+        let gone = features["dropped"].as_array().unwrap().len();
         assert!(gone <= released, "{name}: {gone} released");
         assert_eq!(features["kept"].as_u64(), features["edges"].as_u64().map(|n| n - gone as u64));
         assert!(features["alignment"]["axis_error"].as_f64().unwrap() < 1e-9);

@@ -65,7 +65,7 @@ fn flips_are_told_and_painted() {
     // A layout needs a map without.
     let run = folder
         .expect(1, &["layout", "in.obj", "flipped.obj", "--objective", "arap", "-o", "x.obj"]);
-    assert!(run.stderr.contains("not a seamless map: face 7 is flipped"), "{}", run.stderr);
+    assert!(run.stderr.contains("not a seamless map: "), "{}", run.stderr);
 }
 
 #[test]

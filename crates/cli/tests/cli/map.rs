@@ -181,7 +181,7 @@ fn repairs_are_listed_and_the_map_is_of_the_repaired_mesh() {
         "repair: dropped face 8, a copy of face 0",
         "repair: turned over face 3",
         "repair: dropped vertex 6 in no face",
-        "note: the map is of the repaired mesh",
+        "note: the result is of the repaired mesh",
     ] {
         assert!(run.stderr.contains(line), "{line} in {}", run.stderr);
     }

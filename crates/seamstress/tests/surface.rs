@@ -1,0 +1,177 @@
+//! What a guest may rely on: surfaces, errors with their elements, contexts, ids of the input.
+
+use seamstress::{
+    CancelToken, Context, ErrorCategory, Features, Inspection, MapOptions, QuadOptions, Stage,
+    Surface, SurfaceOptions,
+};
+use seamstress_testkit as testkit;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+fn torus() -> Surface {
+    let soup = testkit::torus(16, 8, 2.0, 0.7);
+    Surface::from_triangles(&soup.positions, &soup.faces).unwrap()
+}
+
+#[test]
+fn a_map_has_a_uv_for_every_corner_and_is_certified_again() {
+    let surface = torus();
+    let map = surface.parametrize(&MapOptions::default()).unwrap();
+    assert_eq!(map.face_uvs().len(), surface.faces().len());
+    let corners: Vec<[f64; 2]> =
+        map.face_uvs().as_flattened().iter().map(|&uv| map.uvs()[uv as usize]).collect();
+    assert_eq!(corners, map.corner_uvs());
+    let certificate = surface.certify(map.uvs(), map.face_uvs()).unwrap();
+    assert_eq!(&certificate, map.certificate());
+    assert_eq!(certificate.faces, 256);
+    assert_eq!(map.report().input.genus, Some(1));
+}
+
+#[test]
+fn a_broken_map_is_refused_with_its_elements() {
+    let surface = torus();
+    let map = surface.parametrize(&MapOptions::default()).unwrap();
+    // Turn a triangle over by giving two of its corners each other's UVs.
+    let mut face_uvs = map.face_uvs().to_vec();
+    face_uvs[7].swap(0, 1);
+    let error = surface.certify(map.uvs(), &face_uvs).unwrap_err();
+    assert_eq!((error.code(), error.kind().category()), ("not-a-map", ErrorCategory::Input));
+    assert!(error.elements().faces.contains(&7), "{:?}", error.elements());
+    let kinds: Vec<&str> = error.findings().iter().map(|f| f.kind.as_str()).collect();
+    assert!(kinds.contains(&"flipped-triangle"), "{kinds:?}");
+    assert_eq!(error.stage(), Some(Stage::Certificate));
+}
+
+#[test]
+fn uvs_of_another_mesh_are_refused() {
+    let error = torus().certify(&[[0.0; 2]; 3], &[[0, 1, 2]]).unwrap_err();
+    assert_eq!(error.to_string(), "UVs for 1 faces; the surface has 256");
+    let error = torus().certify(&[], &vec![[0, 0, 9]; 256]).unwrap_err();
+    assert_eq!(error.to_string(), "face 0 names UV 0; there are 0");
+}
+
+#[test]
+fn what_is_no_surface_is_refused_with_its_elements() {
+    // Three triangles at one edge.
+    let positions =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+    let error =
+        Surface::from_triangles(&positions, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]).unwrap_err();
+    assert_eq!(error.code(), "not-a-surface");
+    assert_eq!(error.elements().edges, [[0, 1]]);
+    assert_eq!(error.elements().faces, [0, 1, 2]);
+    assert!(error.to_string().contains("edge 0-1 has 3 faces"), "{error}");
+    assert!(error.hint().is_some());
+}
+
+#[test]
+fn ids_of_the_input_are_kept_through_polygons_and_repairs() {
+    // Two quads side by side, one of them given twice, and a vertex in no face.
+    let positions: Vec<[f64; 3]> = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [9, 9]]
+        .map(|[x, y]| [x as f64, y as f64, 0.0])
+        .to_vec();
+    let polygons = [vec![0, 1, 4, 3], vec![0, 1, 4, 3], vec![1, 2, 5, 4]];
+    let refused = Surface::from_polygons(&positions, &polygons).unwrap_err();
+    assert_eq!(refused.hint(), Some("all of them can be repaired: add `repair`"));
+    let options = SurfaceOptions::default().repair(true);
+    let inspection = Inspection::of_polygons(&positions, &polygons, &options);
+    assert_eq!(inspection.report().polygons_read, 3);
+    assert!(!inspection.report().repairs.is_empty());
+    let surface = inspection.surface().unwrap();
+    let origins: Vec<Option<u32>> = (0..4).map(|face| surface.input_face(face)).collect();
+    assert_eq!(origins, [Some(0), Some(0), Some(2), Some(2)]);
+    assert_eq!(surface.positions().len(), 6);
+    assert_eq!(surface.input_vertex(5), Some(5));
+    assert_eq!((surface.input_vertex(6), surface.input_face(4)), (None, None));
+}
+
+#[test]
+fn work_reports_progress_and_stops_on_request() {
+    let stages = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&stages);
+    let watched = Context::new().observer(move |progress| {
+        assert!((0.0..=1.0).contains(&progress.fraction));
+        seen.lock().unwrap().push(progress.stage);
+        ControlFlow::Continue(())
+    });
+    torus().with_context(watched).parametrize(&MapOptions::default()).unwrap();
+    let stages = stages.lock().unwrap();
+    for stage in [Stage::Rounding, Stage::Layout, Stage::Certificate] {
+        assert!(stages.contains(&stage), "{stage:?} in {stages:?}");
+    }
+
+    let calls = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&calls);
+    let third = Context::new().observer(move |_| match counted.fetch_add(1, Ordering::Relaxed) {
+        0 | 1 => ControlFlow::Continue(()),
+        _ => ControlFlow::Break(()),
+    });
+    let stopped = torus().with_context(third).parametrize(&MapOptions::default()).unwrap_err();
+    assert_eq!((stopped.code(), stopped.kind().category()), ("cancelled", ErrorCategory::Stopped));
+    assert!(stopped.stage().is_some());
+    assert_eq!(calls.load(Ordering::Relaxed), 3);
+}
+
+#[test]
+fn a_token_and_a_time_limit_stop_work() {
+    let token = CancelToken::new();
+    let surface = torus().with_context(Context::new().cancel_token(&token));
+    token.cancel();
+    let error = surface.parametrize(&MapOptions::default()).unwrap_err();
+    assert_eq!(error.code(), "cancelled");
+
+    let late = torus().with_context(Context::new().time_limit(Duration::ZERO));
+    let error = late.quad_mesh(&QuadOptions::count(100)).unwrap_err();
+    assert_eq!(error.code(), "time-limit");
+    assert_eq!(error.hint(), Some("allow more with `time_limit`"));
+}
+
+#[test]
+fn the_map_does_not_depend_on_threads() {
+    let on = |threads| {
+        let surface = torus().with_context(Context::new().threads(threads));
+        surface.parametrize(&MapOptions::default()).unwrap().uvs().to_vec()
+    };
+    assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn features_are_named_by_edges_of_the_input() {
+    let soup = testkit::cube();
+    let cube = Surface::from_triangles(&soup.positions, &soup.faces).unwrap();
+    let curves = cube.features(&Features::angle(40.0)).unwrap();
+    assert_eq!((curves.edges().len(), curves.report().junctions), (12, 8));
+    let named = cube.features(&Features::edges(curves.edges().to_vec())).unwrap();
+    assert_eq!(named.edges(), curves.edges());
+
+    let error = cube.features(&Features::edges([[0, 99]])).unwrap_err();
+    assert_eq!((error.code(), error.stage()), ("bad-features", Some(Stage::Features)));
+    assert_eq!(error.elements().edges, [[0, 99]]);
+    assert!(error.to_string().contains("edge 0-99: "), "{error}");
+}
+
+#[test]
+fn impossible_options_are_refused_before_any_work() {
+    let observed = Context::new().observer(|_| panic!("no work may be done"));
+    let surface = torus().with_context(observed);
+    let options = MapOptions::default().cone_bias(-1.0);
+    assert_eq!(surface.parametrize(&options).unwrap_err().code(), "options");
+    assert_eq!(surface.quad_mesh(&QuadOptions::count(0)).unwrap_err().code(), "options");
+}
+
+#[test]
+fn quads_know_where_they_come_from() {
+    let surface = torus();
+    let quads = surface.quad_mesh(&QuadOptions::count(120).raw(true)).unwrap();
+    assert_eq!(quads.sources().len(), quads.positions().len());
+    let n_faces = surface.faces().len() as u32;
+    assert!(quads.sources().iter().all(|source| source.face < n_faces));
+    let report = quads.report();
+    assert!(report.quads.is_manifold && report.quads.count == quads.quads().len());
+    let topology = report.quads.topology.as_ref().unwrap();
+    assert_eq!((topology.euler_characteristic, topology.boundary_loops), (0, 0));
+    // Index sum of a torus.
+    assert_eq!(quads.irregular().iter().map(|v| v.index).sum::<i32>(), 0);
+}
