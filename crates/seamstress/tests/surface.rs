@@ -68,23 +68,23 @@ fn what_is_no_surface_is_refused_with_its_elements() {
 
 #[test]
 fn ids_of_the_input_are_kept_through_polygons_and_repairs() {
-    // Two quads side by side, one of them given twice, and a vertex in no face.
-    let positions: Vec<[f64; 3]> = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [9, 9]]
-        .map(|[x, y]| [x as f64, y as f64, 0.0])
+    // A quad, a triangle given twice, another quad, and a vertex in no face.
+    let positions: Vec<[f64; 3]> = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [1, 2], [9, 9]]
+        .map(|[x, y]| [f64::from(x), f64::from(y), 0.0])
         .to_vec();
-    let polygons = [vec![0, 1, 4, 3], vec![0, 1, 4, 3], vec![1, 2, 5, 4]];
+    let polygons = [vec![0, 1, 4, 3], vec![3, 4, 6], vec![3, 4, 6], vec![1, 2, 5, 4]];
     let refused = Surface::from_polygons(&positions, &polygons).unwrap_err();
     assert_eq!(refused.hint(), Some("all of them can be repaired: add `repair`"));
     let options = SurfaceOptions::default().repair(true);
     let inspection = Inspection::of_polygons(&positions, &polygons, &options);
-    assert_eq!(inspection.report().polygons_read, 3);
+    assert_eq!(inspection.report().polygons_read, 4);
     assert!(!inspection.report().repairs.is_empty());
     let surface = inspection.surface().unwrap();
-    let origins: Vec<Option<u32>> = (0..4).map(|face| surface.input_face(face)).collect();
-    assert_eq!(origins, [Some(0), Some(0), Some(2), Some(2)]);
-    assert_eq!(surface.positions().len(), 6);
-    assert_eq!(surface.input_vertex(5), Some(5));
-    assert_eq!((surface.input_vertex(6), surface.input_face(4)), (None, None));
+    let origins: Vec<Option<u32>> = (0..5).map(|face| surface.input_face(face)).collect();
+    assert_eq!(origins, [Some(0), Some(0), Some(1), Some(3), Some(3)]);
+    assert_eq!(surface.positions().len(), 7);
+    assert_eq!(surface.input_vertex(6), Some(6));
+    assert_eq!((surface.input_vertex(7), surface.input_face(5)), (None, None));
 }
 
 #[test]
