@@ -2,8 +2,8 @@
 
 use crate::command;
 use crate::commands::{
-    CheckArgs, ExtractArgs, FeaturesArgs, FieldArgs, IntegerArgs, LayoutQuadsArgs, MapArgs,
-    MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs,
+    CheckArgs, CompletionsArgs, ExtractArgs, FeaturesArgs, FieldArgs, IntegerArgs, LayoutQuadsArgs,
+    ManArgs, MapArgs, MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs,
 };
 use crate::failure::{Failure, Status};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, value_parser};
@@ -73,6 +73,8 @@ enum Chosen {
     /// `lab map` is `map` with all its options.
     #[command(subcommand)]
     Lab(Lab),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
     #[command(hide = true)]
     Layout(OptimizeArgs),
     #[command(hide = true)]
@@ -155,6 +157,8 @@ impl CommandLine {
             Chosen::RepairMatchings(args) | Chosen::Lab(Lab::RepairMatchings(args)) => {
                 command::run(args)
             }
+            Chosen::Completions(args) => args.run(),
+            Chosen::Man(args) => args.run(),
             Chosen::LayoutQuads(args) | Chosen::Lab(Lab::LayoutQuads(args)) => command::run(args),
         }
     }

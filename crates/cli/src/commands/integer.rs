@@ -63,7 +63,7 @@ pub(crate) struct IntegerArgs {
     surface: SurfaceOptions,
 
     #[command(flatten)]
-    texture: TextureOptions,
+    run: RunArgs,
 
     #[command(flatten)]
     features: FeatureArgs,
@@ -76,7 +76,7 @@ pub(crate) struct IntegerArgs {
     tolerance: Option<f64>,
 
     #[command(flatten)]
-    run: RunArgs,
+    texture: TextureOptions,
 }
 
 impl IntegerArgs {

@@ -41,12 +41,12 @@ pub(crate) struct LayoutQuadsArgs {
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
 
-    #[command(flatten)]
-    texture: TextureOptions,
-
     /// Print the report as JSON on standard output instead of the summary
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    texture: TextureOptions,
 }
 
 impl Command for LayoutQuadsArgs {

@@ -62,13 +62,13 @@ pub(crate) struct MapArgs {
     features: FeatureArgs,
 
     #[command(flatten)]
+    run: RunArgs,
+
+    #[command(flatten)]
     method: MethodOptions,
 
     #[command(flatten)]
     texture: TextureOptions,
-
-    #[command(flatten)]
-    run: RunArgs,
 }
 
 impl MapArgs {

@@ -67,10 +67,10 @@ pub(crate) struct OptimizeArgs {
     surface: SurfaceOptions,
 
     #[command(flatten)]
-    texture: TextureOptions,
+    run: RunArgs,
 
     #[command(flatten)]
-    run: RunArgs,
+    texture: TextureOptions,
 }
 
 impl Command for OptimizeArgs {
