@@ -9,6 +9,7 @@ const NONE: u32 = u32::MAX;
 
 /// One reason why quads are not an oriented manifold (ids from 0).
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum QuadFault {
@@ -42,6 +43,7 @@ pub enum QuadFault {
 
 /// All faults of a quad mesh.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QuadFaults(pub Vec<QuadFault>);
 
 impl fmt::Display for QuadFaults {
@@ -58,6 +60,7 @@ impl std::error::Error for QuadFaults {}
 
 /// A vertex that is not regular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct IrregularVertex {
     /// The vertex.
     pub vertex: u32,

@@ -12,6 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// What was checked beyond the certificate of the seamless map, and what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IntegerCertificate {
     /// Interior edges, all with an exact quarter turn and an exact integer translation.

@@ -55,6 +55,7 @@ impl IntegerFailure {
 
 /// How the integer map of one component was made.
 #[derive(Debug, Clone, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IntegerStats {
     /// Faces.

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Options of [`Surface::certify_with`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -66,6 +67,7 @@ impl CertifyOptions {
 
 /// What was found of a map from anywhere.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Verdict {
     /// Whether it is a seamless map, without a flip.
@@ -106,6 +108,7 @@ impl Verdict {
 
 /// Every measure of distortion over a map, and whether it is seamless.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Measurements {
     /// Triangles flipped or collapsed.

@@ -100,6 +100,20 @@ impl Serialize for FeatureSource {
     }
 }
 
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for FeatureSource {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "FeatureSource".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "type": "string",
+            "description": "angle:DEGREES, boundary, lines, edges:A-B,C-D, pairs:FILE or sharp:FILE",
+        })
+    }
+}
+
 impl<'de> Deserialize<'de> for FeatureSource {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
@@ -108,6 +122,7 @@ impl<'de> Deserialize<'de> for FeatureSource {
 
 /// Edges that a map, and quads, should follow: those of all sources.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct Features {
     sources: Vec<FeatureSource>,
@@ -165,6 +180,7 @@ pub struct FeatureCurves {
 
 /// Features in numbers, with vertices of the surface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FeatureReport {
     /// The sources, with the edges that each named.
@@ -204,6 +220,7 @@ pub struct FeatureReport {
 
 /// A source of features and what it named.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FeatureSourceReport {
     /// The source.
@@ -214,6 +231,7 @@ pub struct FeatureSourceReport {
 
 /// A vertex at which feature curves turn, meet or end.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FeatureNode {
     /// The vertex.
@@ -226,6 +244,7 @@ pub struct FeatureNode {
 
 /// A curve of feature edges.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FeatureCurve {
     /// Its vertices in order.

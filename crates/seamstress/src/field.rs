@@ -23,6 +23,7 @@ pub struct CrossField {
 
 /// The indices of a field.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FieldReport {
     /// The version that made it.
@@ -37,6 +38,7 @@ pub struct FieldReport {
 
 /// The matching across an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EdgeMatching {
     /// The face on the left and the one on the right; none beyond the boundary.

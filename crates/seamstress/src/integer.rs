@@ -31,6 +31,7 @@ pub struct IntegerGridMap {
 
 /// How an integer-grid map was made, and how good it is.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IntegerMapReport {
     /// The version that made it.
@@ -62,6 +63,7 @@ pub struct IntegerMapReport {
 
 /// A grid asked for and the one made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct GridReport {
     /// As asked for.

@@ -30,6 +30,7 @@ pub struct SeamlessMap<R = MapReport> {
 
 /// How a map was made, and how good it is.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct MapReport {
     /// The version that made it.

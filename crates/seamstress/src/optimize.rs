@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// Options of [`Surface::optimize`] and [`Surface::flatten_disk`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -50,6 +51,7 @@ pub struct OptimizeOptions {
 
 /// Names of the conic solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
@@ -113,6 +115,7 @@ impl OptimizeOptions {
 
 /// How a map was optimised.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct OptimizeReport {
     /// The version that made it.

@@ -12,6 +12,7 @@ use std::time::Duration;
 ///
 /// In JSON an object with any of the fields; times are in seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -48,6 +49,7 @@ pub struct MapOptions {
     /// Stop that polish after this many seconds; the map then depends on the machine [default: no
     /// limit]
     #[serde(with = "seconds")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = parse::seconds))]
     pub polish_time: Option<Duration>,
 
@@ -132,6 +134,7 @@ impl MapOptions {
 
 /// How fine a grid is to be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum GridSize {
     /// About so many quads in all.
@@ -180,6 +183,7 @@ impl GridSize {
 
 /// How whole numbers are chosen for an integer-grid map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
@@ -193,6 +197,7 @@ pub enum GridRounding {
 
 /// Options of [`Surface::integer_map`](crate::Surface::integer_map).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -256,6 +261,7 @@ impl IntegerMapOptions {
 
 /// What is done to the vertices of extracted quads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -272,6 +278,7 @@ pub struct ShapeOptions {
 
 /// Options of [`Surface::quad_mesh`](crate::Surface::quad_mesh).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]

@@ -32,6 +32,7 @@ pub struct QuadMesh {
 
 /// How quads were made, and what they are.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuadMeshReport {
     /// The version that made them.
@@ -69,6 +70,7 @@ pub struct QuadMeshReport {
 
 /// The map that quads were extracted from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ExtractedMap {
     /// Its area in grid units.
@@ -83,6 +85,7 @@ pub struct ExtractedMap {
 
 /// Quads in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuadReport {
     /// Quads.
@@ -105,6 +108,7 @@ pub struct QuadReport {
 
 /// The topology of a manifold of quads.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuadTopology {
     /// Edges.
@@ -121,6 +125,7 @@ pub struct QuadTopology {
 
 /// Irregular vertices.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IrregularReport {
     /// How many.
@@ -133,6 +138,7 @@ pub struct IrregularReport {
 
 /// What untangling moved.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Untangled {
     /// Vertices moved.
@@ -143,6 +149,7 @@ pub struct Untangled {
 
 /// How quads are extracted from an integer-grid map that is given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]

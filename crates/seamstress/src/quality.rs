@@ -27,6 +27,7 @@ pub struct PolygonMesh {
 
 /// The quality of a quad mesh.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QualityReport {
     /// The version that measured it.
@@ -52,6 +53,7 @@ pub struct QualityReport {
 
 /// How a quad mesh lies to the surface it was made from.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SourceReport {
     /// The file of the surface.

@@ -15,6 +15,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An input, and what was found and done on reading it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SurfaceReport {
     /// The file, if it was read from one.
@@ -45,12 +46,15 @@ pub struct SurfaceReport {
     pub bounding_box: Option<[[f64; 3]; 2]>,
     /// Length of the shortest edge.
     #[serde(serialize_with = "some_number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Number>"))]
     pub min_edge_length: Option<f64>,
     /// Length of the longest edge.
     #[serde(serialize_with = "some_number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Number>"))]
     pub max_edge_length: Option<f64>,
     /// Smallest corner angle, radians.
     #[serde(serialize_with = "some_number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Number>"))]
     pub min_angle: Option<f64>,
     /// What was changed or left out on reading.
     pub notes: Vec<String>,
@@ -88,6 +92,7 @@ impl SurfaceReport {
 
 /// A piece of an input that is connected across edges.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ComponentFactsReport {
     /// Its first face.
@@ -122,25 +127,31 @@ impl ComponentFactsReport {
 
 /// The distortion of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Distortion {
     /// Largest over smallest stretch, square root; 1 for an isometry. Infinite with flips, undefined
     /// over no area.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub tau: f64,
     /// Percentiles of a triangle's tau.
     pub tau_t: Percentiles,
     /// Largest singular value of a triangle.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub sigma_1_max: f64,
     /// Smallest singular value of a triangle.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub sigma_2_min: f64,
     /// Mean symmetric Dirichlet energy over the surface at its best scale; 4 for an isometry.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub symmetric_dirichlet: f64,
     /// Mean squared distance to rotations over the surface at its best scale; 0 for an isometry.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub arap: f64,
     /// Triangles of positive orientation, over which the means are taken.
     pub measured: usize,
@@ -168,16 +179,20 @@ impl From<&quality::Distortion> for Distortion {
 
 /// Median, 95th and 99th percentile over the triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Percentiles {
     /// Half of the triangles are below.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub p50: f64,
     /// 95 of 100 are below.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub p95: f64,
     /// 99 of 100 are below.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub p99: f64,
 }
 
@@ -189,6 +204,7 @@ impl From<&quality::Percentiles> for Percentiles {
 
 /// One measure of distortion over a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Measurement {
     /// The measure.
@@ -197,12 +213,15 @@ pub struct Measurement {
     pub ideal: f64,
     /// The factor on the UVs at which all of this was taken.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub scale: f64,
     /// Mean over the surface.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub mean: f64,
     /// The largest value.
     #[serde(serialize_with = "number")]
+    #[cfg_attr(feature = "schema", schemars(with = "Number"))]
     pub max: f64,
     /// The triangle that has it.
     pub worst: Option<u32>,
@@ -233,6 +252,7 @@ impl From<quality::Summary> for Measurement {
 
 /// Interior vertices at which the angle of a map is not a full turn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ConeReport {
     /// How many.
@@ -252,6 +272,7 @@ impl ConeReport {
 
 /// Edges across which the UVs of a map jump.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SeamReport {
     /// How many.
@@ -272,6 +293,28 @@ pub(crate) fn counts(keys: impl Iterator<Item = i32>) -> BTreeMap<i32, usize> {
         *counts.entry(key).or_default() += 1;
     }
     counts
+}
+
+/// A number as reports have it: `"inf"`, `"-inf"` and `"nan"` where JSON has none.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "only its schema is used")]
+pub(crate) enum Number {
+    Finite(f64),
+    Name(NumberName),
+}
+
+/// What JSON has no number for.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+#[expect(dead_code, reason = "only its schema is used")]
+pub(crate) enum NumberName {
+    Inf,
+    #[schemars(rename = "-inf")]
+    MinusInf,
+    Nan,
 }
 
 /// A number, or its name where JSON has none.

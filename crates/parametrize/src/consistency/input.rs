@@ -129,6 +129,7 @@ pub struct Consistent {
 
 /// How a consistent solution was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ConsistencyStats {
     /// Units of index moved before the search because no triangles could have them.

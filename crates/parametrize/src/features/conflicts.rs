@@ -8,6 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Why a feature edge is not aligned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ReleaseReason {
@@ -38,6 +39,7 @@ impl std::fmt::Display for ReleaseReason {
 
 /// A feature edge that is not aligned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ReleasedFeature {
     /// Its ends.

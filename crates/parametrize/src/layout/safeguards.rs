@@ -17,6 +17,7 @@ use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh};
 
 /// How a layout was reached; the later, the harder the input.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Route {
     /// The Poisson layout of a field, or local/global iterations from it; it may have flips.

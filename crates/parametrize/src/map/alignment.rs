@@ -27,6 +27,7 @@ impl Default for AlignmentTolerance {
 
 /// What was checked of the edges of a map that have to run along its axes, and what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Alignment {
     /// Aligned edges, each once.

@@ -23,6 +23,7 @@ impl Default for Tolerance {
 
 /// An interior vertex whose angle is not a full turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Cone {
     /// The vertex.
     pub vertex: u32,
@@ -46,6 +47,7 @@ pub struct SeamEdge {
 
 /// What was checked, and what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
     /// Triangles, all of positive orientation by an exact test on the given numbers.
     pub faces: usize,

@@ -36,6 +36,7 @@ impl Default for MixedIntegerOptions {
 
 /// How the matchings of a component were chosen.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct MixedIntegerStats {
     /// Batch after batch.
@@ -53,6 +54,7 @@ impl MixedIntegerStats {
 
 /// How the matchings of one batch were chosen.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct BatchStats {
     /// Matchings that were integer variables.

@@ -102,6 +102,7 @@ pub struct MapSolution {
 
 /// How the map of one component was made.
 #[derive(Debug, Clone, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ComponentStats {
     /// Faces.
@@ -127,6 +128,7 @@ pub struct ComponentStats {
 
 /// Cost of one stage.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StageStats {
     /// The stage.
     pub stage: Stage,

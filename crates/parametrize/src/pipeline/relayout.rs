@@ -71,6 +71,7 @@ pub struct Relayout {
 
 /// How one component was laid out.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct RelayoutStats {
     /// Faces.

@@ -7,6 +7,7 @@ use crate::energy::{Arap, Energy, SymmetricDirichlet};
 /// A measure of distortion: a function of the signed singular values of each triangle, a rule for the global
 /// scale at which they are taken, and the mean or the maximum as the figure of the whole map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
     /// `max(sigma_1, 1 / sigma_2)`, eq. (1), of the map as it is scaled.

@@ -71,6 +71,7 @@ pub struct Extraction {
 
 /// A cone of the map in the quad mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QuadCone {
     /// The vertex of the quad mesh.
     pub vertex: u32,
@@ -82,6 +83,7 @@ pub struct QuadCone {
 
 /// What was found and done where a map folds.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Folds {
     /// Faces of negative orientation.

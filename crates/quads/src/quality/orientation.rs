@@ -10,6 +10,7 @@ use seamstress_parallel::prelude::*;
 /// The normal at a corner is that of the surface at the nearest point: of its face, or the mean over the faces of
 /// its edge or, weighted by their angles, around its vertex.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Orientation {
     /// Polygons whose vector area points against the sum of the normals at their corners.

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 /// Angles at the corners of polygons, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Angles {
     /// The smallest.
     pub min: f64,
@@ -21,6 +22,7 @@ pub struct Angles {
 
 /// Lengths of edges, each counted once, in mesh units.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EdgeLengths {
     /// The shortest.
     pub min: f64,

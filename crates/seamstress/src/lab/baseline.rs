@@ -33,6 +33,7 @@ pub struct FieldLayout {
 
 /// How such a layout is, and why it is no map.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FieldLayoutReport {
     /// The version that made it.

@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// What consistent matchings are looked for near, and how.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -41,6 +42,7 @@ pub struct MatchingOptions {
 
 /// How the change of angles is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Norm {
@@ -59,6 +61,7 @@ pub struct ConsistentMatchings {
 
 /// How far matchings, indices and angles moved.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ConsistencyReport {
     /// The version that made them.

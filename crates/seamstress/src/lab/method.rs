@@ -14,6 +14,7 @@ use std::time::Duration;
 
 /// How the rounding of a seam is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
@@ -29,6 +30,7 @@ pub enum Rounding {
 
 /// How matchings are rounded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
@@ -51,6 +53,7 @@ pub struct RoundingOptions {
     /// Stop `--rounding mixed-integer` after this many seconds and round what is left to the nearest
     /// integers; the map then depends on the machine [default: no limit]
     #[serde(with = "seconds")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = crate::options::parse::seconds))]
     pub rounding_time: Option<Duration>,
 }
@@ -69,6 +72,7 @@ impl Default for RoundingOptions {
 
 /// The method with every choice open.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]

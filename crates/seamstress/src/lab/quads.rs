@@ -15,6 +15,7 @@ use std::io;
 
 /// How the coordinates of quads are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
@@ -38,6 +39,7 @@ pub type QuadLayout = SeamlessMap<QuadLayoutReport>;
 
 /// How quads were laid out.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuadLayoutReport {
     /// The version that made it.
@@ -58,6 +60,7 @@ pub struct QuadLayoutReport {
 
 /// A quad mesh that was laid out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuadInput {
     /// The file.

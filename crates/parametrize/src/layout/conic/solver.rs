@@ -8,6 +8,7 @@ use crate::progress::{Cancelled, Watch};
 
 /// A solver of [`Program`]s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Solver {
     /// The interior point of this crate, which uses the structure of the programs.
@@ -44,6 +45,7 @@ impl Default for SolverOptions {
 
 /// How a solver ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Outcome {

@@ -17,6 +17,7 @@ use seamstress_linalg::NotPositiveDefinite;
 
 /// What a layout minimises, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Objective {
@@ -123,6 +124,7 @@ impl Default for ObjectiveOptions {
 
 /// How a minimiser ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Ending {
     /// The objective settled.
@@ -174,6 +176,7 @@ pub struct Optimized {
 
 /// How the conic programs of a layout were solved.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ConicStats {
     /// Programs solved.
