@@ -23,6 +23,8 @@ mod polygons;
 mod quads;
 mod quality;
 mod report;
+#[cfg(feature = "schema")]
+mod schema;
 mod surface;
 #[doc(hidden)]
 pub mod words;
@@ -60,6 +62,8 @@ pub use report::{
     ComponentFactsReport, ConeReport, Distortion, Measurement, Percentiles, SeamReport,
     SurfaceReport, VERSION,
 };
+#[cfg(feature = "schema")]
+pub use schema::schemas;
 pub use surface::Surface;
 
 #[cfg(feature = "io")]

@@ -130,15 +130,9 @@ impl Command for MapArgs {
             LaidOut::Uncertified(layout) => to_json(layout.report()),
         };
         let options = self.options();
-        let mut all = to_json(&options.map);
-        if let (Some(all), Value::Object(rounding)) =
-            (all.as_object_mut(), to_json(&options.rounding))
-        {
-            all.extend(rounding);
-        }
-        all["start"] = to_json(&options.start);
-        all["repair"] = self.surface.repair.into();
-        value["options"] = all;
+        value["options"] = to_json(&options.map);
+        value["lab"] = to_json(&options.rounding);
+        value["lab"]["start"] = to_json(&options.start);
         value
     }
 

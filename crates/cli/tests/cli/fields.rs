@@ -48,7 +48,7 @@ fn some_cones_may_be_given_and_the_rest_left_free() {
     assert!(out.lines().any(|line| line == "0 1"), "{out}");
     assert!(!out.lines().skip(1).any(|line| line.starts_with("1 ")), "{out}");
     let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
-    assert_eq!(report["options"]["start"]["free_cones"], true);
+    assert_eq!(report["lab"]["start"]["free_cones"], true);
     let refused = folder.expect(1, &start[..6]);
     assert!(
         refused.stderr.contains("have indices that sum to 1; they must sum to 8"),

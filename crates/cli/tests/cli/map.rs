@@ -200,8 +200,8 @@ fn mixed_integer_rounding_reports_incumbents_and_bounds() {
     let map = ["map", "in.obj", "-o", "map.obj", "--rounding", "mixed-integer"];
     let run = folder.expect(0, &[&map[..], &["--batch", "20", "--nodes", "15", "--json"]].concat());
     let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
-    assert_eq!(report["options"]["rounding"], "mixed-integer");
-    assert_eq!(report["options"]["batch"], 20);
+    assert_eq!(report["lab"]["rounding"], "mixed-integer");
+    assert_eq!(report["lab"]["batch"], 20);
     let batches = report["components"][0]["mixed_integer"]["batches"].as_array().unwrap();
     assert!(batches.len() >= 2);
     for batch in batches {
