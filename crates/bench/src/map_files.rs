@@ -3,7 +3,7 @@
 use crate::meshes::Mesh;
 use seamstress_io::{MapObj, read_mesh, write_map_obj};
 use seamstress_mesh::Metric;
-use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, make_map};
+use seamstress_parametrize::{MapOptions, Purpose, SeamlessMap, Tolerance, make_map};
 use seamstress_quantize::GridSize;
 use std::error::Error;
 use std::fs::File;
@@ -34,8 +34,8 @@ pub(crate) fn seamless(
     let start = Instant::now();
     let mut go_on = |_| ControlFlow::Continue(());
     let side = Metric::from_positions(&mesh.connectivity, &mesh.positions).side();
-    let cell = Some(GridSize::Quads(quads).cell(side));
-    let options = MapOptions { cell, ..MapOptions::default() };
+    let purpose = Purpose::Quads { edge_length: GridSize::Quads(quads).cell(side) };
+    let options = MapOptions { purpose, ..MapOptions::default() };
     let map = make_map(&mesh.connectivity, &mesh.positions, &options, &mut go_on)?.map;
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = kept {

@@ -13,9 +13,9 @@ pub mod features;
 pub mod field;
 pub mod layout;
 pub mod map;
+mod method;
 pub mod mixed_integer;
 mod ordered;
-mod pipeline;
 pub mod progress;
 pub mod quality;
 pub mod quarter;
@@ -27,11 +27,11 @@ pub use layout::conic::Solver;
 pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
 pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
-pub use pipeline::{
-    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, Relayout,
-    RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap, lay_out_disk,
-    make_aligned_map, make_field_map, make_map, make_map_from, relayout,
-};
 #[doc(hidden)]
-pub use pipeline::{followed, in_component};
+pub use method::followed;
+pub use method::{
+    ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, MethodError,
+    Purpose, Relayout, RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap,
+    lay_out_disk, make_aligned_map, make_field_map, make_map, make_map_from, relayout,
+};
 pub use progress::{Observer, Progress, Stage};

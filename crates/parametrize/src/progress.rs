@@ -1,5 +1,6 @@
 //! Progress and cancellation of long work.
 
+use seamstress_linalg::NotPositiveDefinite;
 use std::ops::ControlFlow;
 use web_time::Instant;
 
@@ -60,6 +61,46 @@ pub struct Progress {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("stopped on request")]
 pub struct Cancelled;
+
+/// Why work on linear systems was not finished.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A linear system could not be solved.
+    #[error(transparent)]
+    Numeric(#[from] NotPositiveDefinite),
+}
+
+/// An error that may be the caller's request to stop.
+pub(crate) trait MaybeCancelled {
+    /// That request, if it is one.
+    fn cancelled(&self) -> Option<Cancelled>;
+}
+
+impl MaybeCancelled for SolveError {
+    fn cancelled(&self) -> Option<Cancelled> {
+        match *self {
+            Self::Cancelled(cancelled) => Some(cancelled),
+            Self::Numeric(_) => None,
+        }
+    }
+}
+
+/// The result as it is unless the caller asked to stop: what else failed may be tried in another way.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn unless_cancelled<T, E: MaybeCancelled>(
+    result: Result<T, E>,
+) -> Result<Result<T, E>, Cancelled> {
+    match result.as_ref().err().and_then(E::cancelled) {
+        Some(cancelled) => Err(cancelled),
+        None => Ok(result),
+    }
+}
 
 /// A caller's view of running work: called in every iteration of every long loop.
 pub type Observer<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;

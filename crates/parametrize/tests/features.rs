@@ -8,7 +8,7 @@ use seamstress_mesh::features::{EdgeFinder, EdgeSet, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
 use seamstress_parallel::with_threads;
-use seamstress_parametrize::cut::MatchedCut;
+use seamstress_parametrize::cut::{MatchedCut, Unfolding};
 use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
 use seamstress_parametrize::{
     MapError, MapOptions, MapSolution, Objective, RelayoutOptions, ReleaseReason, Sectors,
@@ -248,12 +248,11 @@ fn indices_of_sectors_are_integers_with_the_right_sum() {
             .collect();
         let features = of_pairs(&soup, &pairs, true);
         let sectors = Sectors::new(&mesh, &metric, &features);
-        let mut matched = MatchedCut::through_curved_sectors(&sectors, &metric);
+        let unfolding = Unfolding::through_curved_sectors(&sectors, &metric);
         let options = RoundingOptions::default();
-        unwatched(|watch| round(&sectors, &metric, &mut matched, &options, watch)).unwrap();
-        repair(&sectors, &metric, &mut matched);
-        let r: Vec<f64> = matched.matching.iter().map(|&r| f64::from(r)).collect();
-        let index = matched.indices(&sectors, &metric, &r);
+        let rounding = unwatched(|watch| round(&sectors, &metric, unfolding, &options, watch));
+        let matched = repair(&sectors, &metric, rounding.unwrap().start.matched).matched;
+        let index = matched.unfolding.indices(&sectors, &metric, &matched.rotations());
         let off = index.iter().map(|k| (k - k.round()).abs()).fold(0.0, f64::max);
         assert!(off < 1e-9, "an index {off} off an integer");
         let sum: f64 = index.iter().sum();
@@ -340,9 +339,10 @@ fn matchings_outlive_the_release_of_features() {
         let many = few.union(&mesh, &of_pairs(&soup, &released, true));
         let from = Sectors::new(&mesh, &metric, &many);
         let to = Sectors::new(&mesh, &metric, &few);
-        let mut matched = MatchedCut::through_curved_sectors(&from, &metric);
+        let unfolding = Unfolding::through_curved_sectors(&from, &metric);
         let options = RoundingOptions::default();
-        unwatched(|watch| round(&from, &metric, &mut matched, &options, watch)).unwrap();
+        let rounding = unwatched(|watch| round(&from, &metric, unfolding, &options, watch));
+        let matched = rounding.unwrap().start.matched;
         let (fewer, _) = matched.with_fewer_aligned(&from, &to, &metric);
         // The angle around each vertex stays what it is.
         let around = |sectors: &Sectors<'_>, matched: &MatchedCut| {
@@ -359,8 +359,7 @@ fn matchings_outlive_the_release_of_features() {
             assert_eq!(before[v.at()], after[v.at()], "vertex {v:?}");
         }
         // Rotations and indices still agree.
-        let r: Vec<f64> = fewer.matching.iter().map(|&r| f64::from(r)).collect();
-        let index = fewer.indices(&to, &metric, &r);
+        let index = fewer.unfolding.indices(&to, &metric, &fewer.rotations());
         let off = to.slit().vertices().filter(|&s| !to.is_free(s));
         let off = off.map(|s| (index[s] - index[s].round()).abs()).fold(0.0, f64::max);
         assert!(off < 1e-9, "an index {off} off an integer");

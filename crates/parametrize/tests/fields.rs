@@ -7,13 +7,15 @@ mod common;
 use common::{assert_seamless, mapped, mesh_of, surface};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{HalfedgeData, TriMesh};
+use seamstress_parametrize::cut::{FramedCut, Unfolding};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::field::{
     ConePrescription, CrossField, FieldError, Homology, PrescriptionError, directions_in_space,
     extract, frames_from_directions, map_indices, matched_cut, matchings_from_rows, residual_field,
 };
-use seamstress_parametrize::layout::safeguards::LayoutError;
-use seamstress_parametrize::{MapError, MapOptions, MapSolution, Start, make_map_from};
+use seamstress_parametrize::{
+    MapError, MapOptions, MapSolution, MethodError, Start, make_map_from,
+};
 use seamstress_testkit as kit;
 use std::ops::ControlFlow;
 
@@ -181,11 +183,10 @@ fn a_cut_of_a_field_has_its_indices() {
     for soup in [kit::bumpy(&kit::icosphere(2), 0.1, 4), kit::random_surface(12)] {
         let (mesh, metric) = surface(&soup);
         let (_, _, field) = field_of(&soup, &mapped(&soup));
-        let (matched, frames) = matched_cut(&mesh, &metric, &field);
-        assert_eq!(
-            matched.sector_indices(&Sectors::unaligned(&mesh), &metric),
-            field.indices(&mesh)
-        );
+        let sectors = Sectors::unaligned(&mesh);
+        let unfolding = Unfolding::through_curved_sectors(&sectors, &metric);
+        let FramedCut { matched, frames } = matched_cut(&mesh, unfolding, &field);
+        assert_eq!(matched.sector_indices(&sectors, &metric), field.indices(&mesh));
         assert_eq!(frames.len(), mesh.n_faces());
     }
 }
@@ -342,7 +343,7 @@ fn cones_that_leave_too_much_are_refused_in_the_ids_of_the_whole_mesh() {
     assert!(
         matches!(
             cause,
-            LayoutError::Cones(PrescriptionError::NoTaker { vertex }) if (8..11).contains(&vertex)
+            MethodError::Cones(PrescriptionError::NoTaker { vertex }) if (8..11).contains(&vertex)
         ),
         "{cause}"
     );

@@ -8,12 +8,13 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
 use seamstress_parametrize::cut::{
-    Cut, DualTree, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices, unfold,
+    Cut, DualTree, FramedCut, MatchedCut, SeamGraph, Unfolding, connect_cones, regauge,
+    turned_vertices, unfold,
 };
 use seamstress_parametrize::features::index_bounds;
-use seamstress_parametrize::layout::safeguards::retree;
+use seamstress_parametrize::layout::ladder::retree;
 use seamstress_parametrize::rounding::{
-    CleanUpOptions, ConeCount, RoundingOptions, clean_up, fix_holonomy, repair, round,
+    CleanUpOptions, ConeCount, Repair, RoundingOptions, clean_up, fix_holonomy, repair, round,
 };
 use seamstress_testkit as kit;
 
@@ -46,15 +47,19 @@ fn trees(mesh: &TriMesh) -> [DualTree; 2] {
     [DualTree::lightest(mesh, noise(mesh)), DualTree::breadth_first(mesh, &nothing).unwrap()]
 }
 
-fn rounded(mesh: &TriMesh, metric: &Metric) -> MatchedCut {
-    let mut matched =
-        MatchedCut::new(&Sectors::unaligned(mesh), metric, DualTree::lightest(mesh, noise(mesh)));
+fn rounded_with_frames(mesh: &TriMesh, metric: &Metric) -> FramedCut {
+    let sectors = Sectors::unaligned(mesh);
+    let unfolding = Unfolding::new(&sectors, metric, DualTree::lightest(mesh, noise(mesh)));
     let options = RoundingOptions::default();
-    unwatched(|watch| round(&Sectors::unaligned(mesh), metric, &mut matched, &options, watch))
-        .unwrap();
-    let (_, hopeless) = repair(&Sectors::unaligned(mesh), metric, &mut matched);
+    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, &options, watch));
+    let FramedCut { matched, frames } = rounding.unwrap().start;
+    let Repair { matched, hopeless, .. } = repair(&sectors, metric, matched);
     assert_eq!(hopeless, []);
-    matched
+    FramedCut { matched, frames }
+}
+
+fn rounded(mesh: &TriMesh, metric: &Metric) -> MatchedCut {
+    rounded_with_frames(mesh, metric).matched
 }
 
 #[test]
@@ -208,13 +213,15 @@ fn indices_sum_to_four_times_chi_whatever_the_rotations() {
     for (seed, soup) in shapes().iter().enumerate() {
         let (mesh, metric) = surface(soup);
         for tree in trees(&mesh) {
-            let matched = MatchedCut::new(&Sectors::unaligned(&mesh), &metric, tree);
+            let unfolding = Unfolding::new(&Sectors::unaligned(&mesh), &metric, tree);
             let mut rng = kit::Rng::new(seed as u64);
-            let r: Vec<f64> = matched.cut.seams.iter().map(|_| 20.0 * rng.unit() - 10.0).collect();
-            let sum: f64 = matched.indices(&Sectors::unaligned(&mesh), &metric, &r).iter().sum();
+            let r: Vec<f64> =
+                unfolding.cut.seams.iter().map(|_| 20.0 * rng.unit() - 10.0).collect();
+            let sum: f64 = unfolding.indices(&Sectors::unaligned(&mesh), &metric, &r).iter().sum();
             assert!((sum - 4.0 * mesh.euler_characteristic() as f64).abs() < 1e-8);
             // At the isometric rotations the index is the curvature.
-            let index = matched.indices(&Sectors::unaligned(&mesh), &metric, &matched.isometric);
+            let sectors = Sectors::unaligned(&mesh);
+            let index = unfolding.indices(&sectors, &metric, &unfolding.isometric);
             for (k, defect) in index.iter().zip(metric.curvature(&mesh).iter()) {
                 assert!((k * std::f64::consts::FRAC_PI_2 - defect).abs() < 1e-12);
             }
@@ -259,7 +266,7 @@ fn repair_brings_any_matching_within_bounds() {
         );
         let mut rng = kit::Rng::new(seed as u64);
         matched.matching.iter_mut().for_each(|r| *r += rng.below(7) as i32 - 3);
-        let (_, hopeless) = repair(&Sectors::unaligned(&mesh), &metric, &mut matched);
+        let Repair { matched, hopeless, .. } = repair(&Sectors::unaligned(&mesh), &metric, matched);
         let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
             let (low, high) = index_bounds(mesh.valence(v));
@@ -314,12 +321,13 @@ fn new_holonomy_keeps_every_index() {
         matched.matching.iter_mut().for_each(|r| *r += rng.below(3) as i32 - 1);
         let before = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let sum: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
-        fix_holonomy(&Sectors::unaligned(&mesh), &metric, &mut matched).unwrap();
+        let matched = fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched).unwrap();
         assert_eq!(matched.sector_indices(&Sectors::unaligned(&mesh), &metric), before);
         let after: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         assert!((sum - after).abs() < 1e-8);
         // What is best is not changed again.
-        assert_eq!(fix_holonomy(&Sectors::unaligned(&mesh), &metric, &mut matched).unwrap(), 0);
+        let again = fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched.clone()).unwrap();
+        assert_eq!(again.matching, matched.matching);
     }
 }
 
@@ -328,7 +336,7 @@ fn clean_up_never_makes_cones() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
         for price in [0.0006, 0.01, 1.0] {
-            let mut matched = rounded(&mesh, &metric);
+            let start = rounded_with_frames(&mesh, &metric);
             let count = |matched: &MatchedCut| {
                 matched
                     .sector_indices(&Sectors::unaligned(&mesh), &metric)
@@ -336,15 +344,15 @@ fn clean_up_never_makes_cones() {
                     .filter(|&&k| k != 0)
                     .count()
             };
-            let before = count(&matched) as i32;
+            let before = count(&start.matched) as i32;
             let options = CleanUpOptions {
                 price,
                 count: ConeCount::Cones,
                 largest_scale: f64::INFINITY,
                 largest_deviation: 1.5,
             };
-            let (stats, _) = unwatched(|watch| {
-                clean_up(&Sectors::unaligned(&mesh), &metric, &mut matched, &options, watch)
+            let (FramedCut { matched, .. }, stats) = unwatched(|watch| {
+                clean_up(&Sectors::unaligned(&mesh), &metric, &start, &options, watch)
             })
             .unwrap();
             assert_eq!(stats.saved, before - count(&matched) as i32);

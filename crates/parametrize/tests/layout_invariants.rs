@@ -9,7 +9,8 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
 use seamstress_parametrize::cut::{
-    Cut, DualTree, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices, unfold,
+    Cut, DualTree, FramedCut, SeamGraph, Unfolding, connect_cones, frames_of_angles, regauge,
+    turned_vertices, unfold,
 };
 use seamstress_parametrize::energy::{
     Energy, Jacobian, SymmetricDirichlet, Triangle, largest_step, triangles,
@@ -17,9 +18,9 @@ use seamstress_parametrize::energy::{
 use seamstress_parametrize::layout::arap::frames;
 use seamstress_parametrize::layout::exact::{ExactLayout, is_positive};
 use seamstress_parametrize::layout::homotopy::{Continuation, angle_sums, barrier, continuation};
+use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_out, retree};
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};
 use seamstress_parametrize::layout::problem::LayoutProblem;
-use seamstress_parametrize::layout::safeguards::{lay_out, retree};
 use seamstress_parametrize::layout::space::{LinearSpace, seam_residual, seamless_space};
 use seamstress_parametrize::quarter::{rotation, turn};
 use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
@@ -42,15 +43,15 @@ fn shapes() -> Vec<TriangleSoup> {
     shapes
 }
 
-/// Rounded and repaired matchings over a plain tree, and the last frames of the rounding.
-fn rounded(mesh: &TriMesh, metric: &Metric) -> (MatchedCut, Vec<Complex64>) {
+/// Rounded and repaired matchings over a plain tree, with the last frames of the rounding.
+fn rounded(mesh: &TriMesh, metric: &Metric) -> FramedCut {
+    let sectors = Sectors::unaligned(mesh);
     let tree = DualTree::lightest(mesh, |h| metric.length[h]);
-    let mut matched = MatchedCut::new(&Sectors::unaligned(mesh), metric, tree);
+    let unfolding = Unfolding::new(&sectors, metric, tree);
     let options = RoundingOptions::default();
-    let rounding =
-        unwatched(|watch| round(&Sectors::unaligned(mesh), metric, &mut matched, &options, watch));
-    repair(&Sectors::unaligned(mesh), metric, &mut matched);
-    (matched, rounding.unwrap().0)
+    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, &options, watch));
+    let FramedCut { matched, frames } = rounding.unwrap().start;
+    FramedCut { matched: repair(&sectors, metric, matched).matched, frames }
 }
 
 /// The isometric layout of a cut mesh: its triangles and positions.
@@ -71,7 +72,7 @@ struct Space {
 }
 
 fn space_of(mesh: &TriMesh, metric: &Metric) -> Space {
-    let full = rounded(mesh, metric).0.matching_per_halfedge(&Sectors::unaligned(mesh));
+    let full = rounded(mesh, metric).matched.matching_per_halfedge(&Sectors::unaligned(mesh));
     let cones = turned_vertices(mesh, &full);
     let (cut, tree) = connect_cones(mesh, metric, &cones).unwrap();
     let (mut matching, _) = regauge(mesh, &tree, &full);
@@ -163,9 +164,9 @@ fn pulling_back_is_the_adjoint_of_expanding() {
 fn homotopies_end_with_the_angles_of_the_cones() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
-        let (matched, _) = rounded(&mesh, &metric);
+        let matched = rounded(&mesh, &metric).matched;
         let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
-        let triangles = triangles(&mesh, &metric, &matched.cut);
+        let triangles = triangles(&mesh, &metric, &matched.unfolding.cut);
         let settings = Continuation::default();
         let closed = [
             unwatched(|watch| barrier(&Sectors::unaligned(&mesh), &metric, &matched, watch))
@@ -191,17 +192,21 @@ fn homotopies_end_with_the_angles_of_the_cones() {
 fn exact_layouts_have_the_angles_asked_for_over_any_tree() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
-        let (matched, frames) = rounded(&mesh, &metric);
-        let over_new_tree = retree(&Sectors::unaligned(&mesh), &metric, &matched);
-        for (matched, start) in [(&matched, Some(frames.as_slice())), (&over_new_tree, None)] {
-            let laid = unwatched(|watch| {
-                lay_out(&Sectors::unaligned(&mesh), &metric, matched.clone(), start, watch)
-            })
-            .unwrap();
-            assert!(laid.layout.defects(&Sectors::unaligned(&mesh), &laid.y).none());
-            let z = laid.layout.expand(&laid.y);
-            let (cut, problem) = (&laid.layout.cut, laid.layout.problem());
-            assert!(seam_residual(&mesh, cut, &laid.layout.matching, &z) < 1e-11);
+        let start = rounded(&mesh, &metric);
+        let matched = retree(&Sectors::unaligned(&mesh), &metric, &start.matched);
+        let tree = &matched.unfolding.tree;
+        let frames = frames_of_angles(&mesh, &metric, &metric.angle, tree);
+        for start in [start, FramedCut { matched, frames }] {
+            let matched = &start.matched;
+            let effort = LayoutEffort::Thorough;
+            let layout = unwatched(|watch| {
+                lay_out(&Sectors::unaligned(&mesh), &metric, &start, effort, watch)
+            });
+            let SeamlessLayout { space, y, .. } = layout.unwrap().unwrap();
+            assert!(space.defects(&Sectors::unaligned(&mesh), &y).none());
+            let z = space.expand(&y);
+            let (cut, problem) = (&space.cut, space.problem());
+            assert!(seam_residual(&mesh, cut, &space.matching, &z) < 1e-11);
             let sums = angle_sums(&mesh, problem.triangles(), &z);
             let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
             for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
@@ -215,7 +220,7 @@ fn exact_layouts_have_the_angles_asked_for_over_any_tree() {
 #[test]
 fn a_mirrored_layout_is_all_defects() {
     let (mesh, metric) = surface(&kit::cube());
-    let (matched, frames) = rounded(&mesh, &metric);
+    let FramedCut { matched, frames } = rounded(&mesh, &metric);
     let mut layout = ExactLayout::new(&Sectors::unaligned(&mesh), &metric, &matched).unwrap();
     let y = layout.arap(&frames, 20).unwrap();
     assert!(layout.defects(&Sectors::unaligned(&mesh), &y).none());

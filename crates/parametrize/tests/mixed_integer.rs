@@ -7,7 +7,7 @@ use common::{mapped_with, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::MapOptions;
-use seamstress_parametrize::cut::{DualTree, MatchedCut, curvature_weight, frames_of_angles};
+use seamstress_parametrize::cut::{DualTree, Unfolding, curvature_weight, frames_of_angles};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::layout::conic::{
     Outcome, Program, ProgramKind, SolverOptions, reference,
@@ -23,17 +23,17 @@ use seamstress_testkit as kit;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-fn cut(mesh: &TriMesh, metric: &Metric) -> MatchedCut {
+fn cut(mesh: &TriMesh, metric: &Metric) -> Unfolding {
     let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
-    MatchedCut::new(&Sectors::unaligned(mesh), metric, tree)
+    Unfolding::new(&Sectors::unaligned(mesh), metric, tree)
 }
 
 fn round(soup: &TriangleSoup, options: &MixedIntegerOptions) -> (Vec<i32>, MixedIntegerStats) {
     let (mesh, metric) = surface(soup);
-    let mut matched = cut(&mesh, &metric);
-    let rounded =
-        unwatched(|watch| round_mixed_integer(&mesh, &metric, &mut matched, options, watch));
-    (matched.matching, rounded.unwrap().1)
+    let unfolding = cut(&mesh, &metric);
+    let rounded = unwatched(|watch| round_mixed_integer(&mesh, &metric, unfolding, options, watch));
+    let (start, stats) = rounded.unwrap();
+    (start.matched.matching, stats)
 }
 
 /// The least tau of program (9) with the isometric frames over all choices of the integers on both sides of
@@ -41,13 +41,14 @@ fn round(soup: &TriangleSoup, options: &MixedIntegerOptions) -> (Vec<i32>, Mixed
 fn enumerated(soup: &TriangleSoup) -> (f64, Vec<i32>) {
     let (mesh, metric) = surface(soup);
     let sectors = Sectors::unaligned(&mesh);
-    let mut matched = cut(&mesh, &metric);
-    let frames = frames_of_angles(&mesh, &metric, &metric.angle, &matched.tree);
-    let seams = matched.isometric.len();
+    let mut matched = cut(&mesh, &metric).nearest();
+    let frames = frames_of_angles(&mesh, &metric, &metric.angle, &matched.unfolding.tree);
+    let seams = matched.matching.len();
     let mut best = (f64::INFINITY, Vec::new());
     for bits in 0..1usize << seams {
         for s in 0..seams {
-            matched.matching[s] = matched.isometric[s].floor() as i32 + (bits >> s & 1) as i32;
+            matched.matching[s] =
+                matched.unfolding.isometric[s].floor() as i32 + (bits >> s & 1) as i32;
         }
         let layout = ExactLayout::new(&sectors, &metric, &matched).unwrap();
         let turned = frames.iter().zip(layout.gauge.iter()).map(|(&r, &k)| turn(r, k));
@@ -150,13 +151,13 @@ fn what_is_open_when_time_is_up_is_rounded_to_the_nearest() {
     let (matching, stats) = round(&soup, &options);
     assert_eq!((stats.left_to_nearest, stats.nodes()), (matching.len(), 0));
     let (mesh, metric) = surface(&soup);
-    assert_eq!(matching, cut(&mesh, &metric).matching);
+    assert_eq!(matching, cut(&mesh, &metric).nearest().matching);
 }
 
 #[test]
 fn it_can_be_stopped() {
     let (mesh, metric) = surface(&kit::bumpy(&kit::icosphere(2), 0.15, 4));
-    let mut matched = cut(&mesh, &metric);
+    let unfolding = cut(&mesh, &metric);
     let mut calls = 0;
     let mut stop = |_| {
         calls += 1;
@@ -164,6 +165,6 @@ fn it_can_be_stopped() {
     };
     let mut watch = Watch::new(&mut stop, 0, 1);
     let options = MixedIntegerOptions::default();
-    assert!(round_mixed_integer(&mesh, &metric, &mut matched, &options, &mut watch).is_err());
+    assert!(round_mixed_integer(&mesh, &metric, unfolding, &options, &mut watch).is_err());
     assert!(calls < 30);
 }

@@ -6,10 +6,10 @@ mod common;
 
 use common::{assert_seamless, mesh_of, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::cut::{DualTree, MatchedCut};
+use seamstress_parametrize::cut::{DualTree, FramedCut, MatchedCut, Unfolding};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::field::{smooth_field, smooth_frames};
-use seamstress_parametrize::layout::safeguards::Route;
+use seamstress_parametrize::layout::route::Route;
 use seamstress_parametrize::{
     FieldMap, FieldMapOptions, MapOptions, Start, Violation, make_field_map, make_map_from,
 };
@@ -40,22 +40,19 @@ fn energy(soup: &TriangleSoup, matched: &MatchedCut) -> f64 {
     edges.iter().map(|&h| term(h)).sum::<f64>() / edges.len() as f64
 }
 
-fn cut(soup: &TriangleSoup) -> MatchedCut {
+fn cut(soup: &TriangleSoup) -> Unfolding {
     let (mesh, metric) = surface(soup);
-    MatchedCut::new(
-        &Sectors::unaligned(&mesh),
-        &metric,
-        DualTree::lightest(&mesh, |h| metric.length[h]),
-    )
+    let tree = DualTree::lightest(&mesh, |h| metric.length[h]);
+    Unfolding::new(&Sectors::unaligned(&mesh), &metric, tree)
 }
 
 #[test]
 fn the_energy_is_that_of_the_frames_and_below_that_of_rounding_at_once() {
     for soup in [kit::bumpy(&kit::icosphere(3), 0.1, 1), kit::random_surface(3)] {
         let (mesh, metric) = surface(&soup);
-        let (at_once, mut matched) = (cut(&soup), cut(&soup));
-        let (frames, stats) =
-            unwatched(|watch| smooth_field(&mesh, &metric, &mut matched, watch)).unwrap();
+        let at_once = cut(&soup).nearest();
+        let (FramedCut { matched, frames }, stats) =
+            unwatched(|watch| smooth_field(&mesh, &metric, cut(&soup), watch)).unwrap();
         assert_eq!(frames.len(), mesh.n_faces());
         assert!((energy(&soup, &matched) - stats.energy).abs() < 1e-6 * stats.energy.max(1e-3));
         assert!(stats.energy < energy(&soup, &at_once));
@@ -70,9 +67,8 @@ fn the_energy_is_that_of_the_frames_and_below_that_of_rounding_at_once() {
 fn flat_and_boxy_surfaces_have_parallel_fields() {
     for soup in [kit::cube(), kit::subdivide(&kit::l_bracket()), kit::annulus(12, 4)] {
         let (mesh, metric) = surface(&soup);
-        let mut matched = cut(&soup);
         let (_, stats) =
-            unwatched(|watch| smooth_field(&mesh, &metric, &mut matched, watch)).unwrap();
+            unwatched(|watch| smooth_field(&mesh, &metric, cut(&soup), watch)).unwrap();
         assert!(stats.energy < 1e-12, "{stats:?}");
         let map = classical(&soup, &FieldMapOptions::default());
         assert!(map.map.is_ok());

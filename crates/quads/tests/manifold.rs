@@ -3,7 +3,7 @@
 
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
-use seamstress_parametrize::{MapOptions, make_map};
+use seamstress_parametrize::{MapOptions, Purpose, make_map};
 use seamstress_quads::manifold_quads;
 use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
 use seamstress_testkit as testkit;
@@ -13,8 +13,8 @@ use std::ops::ControlFlow;
 fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     let size = GridSize::Quads(quads);
-    let cell = Some(size.cell(Metric::from_positions(&mesh, &soup.positions).side()));
-    let options = MapOptions { cell, ..MapOptions::default() };
+    let edge_length = size.cell(Metric::from_positions(&mesh, &soup.positions).side());
+    let options = MapOptions { purpose: Purpose::Quads { edge_length }, ..MapOptions::default() };
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap().map;
     let made = manifold_quads(&mesh, &soup.positions, size, |size| {

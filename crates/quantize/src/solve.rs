@@ -6,7 +6,6 @@ use super::outcome::{IntegerFailure, IntegerStats};
 use super::{GridSize, IntegerOptions};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Face, Metric, TriMesh, components};
-use seamstress_parametrize::in_component;
 use seamstress_parametrize::map::{Alignment, AlignmentTolerance, SeamlessMap, Violations};
 use seamstress_parametrize::progress::{Cancelled, Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
@@ -199,7 +198,7 @@ impl<'p> Run<'p, '_, '_> {
         let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &positions);
         let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
-        let aligned = in_component(aligned, piece);
+        let aligned = aligned.restrict(piece);
         let map = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
             .map_err(|cause| self.error(k, cause.into()))?;
         let read =

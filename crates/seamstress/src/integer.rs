@@ -249,7 +249,8 @@ impl Surface {
         watcher: &mut Watcher,
     ) -> Result<SeamlessStart, Error> {
         let mut settings = options.map.to_method();
-        settings.cell = Some(options.size.to_quantize().cell(self.metric().side()));
+        let edge_length = options.size.to_quantize().cell(self.metric().side());
+        settings.purpose = method::Purpose::Quads { edge_length };
         let made = self.make_map(&options.map, settings, watcher)?;
         Ok(SeamlessStart { map: made.inner().clone(), features: made.features().cloned() })
     }

@@ -1,5 +1,6 @@
 //! A set of edges of a mesh.
 
+use crate::components::Component;
 use crate::ids::{Halfedge, HalfedgeData, Vertex};
 use crate::mesh::TriMesh;
 
@@ -41,6 +42,14 @@ impl EdgeSet {
     pub fn without(&self, mesh: &TriMesh, removed: impl IntoIterator<Item = Halfedge>) -> Self {
         let removed = Self::new(mesh, removed);
         Self::new(mesh, self.edges.iter().copied().filter(|&h| !removed.contains(h)))
+    }
+
+    /// The edges that lie in a connected piece of the mesh, in its own ids.
+    #[must_use]
+    pub fn restrict(&self, piece: &Component) -> Self {
+        let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
+        let is_in = |h: &Halfedge| self.contains(whole(h));
+        Self::new(&piece.mesh, piece.mesh.halfedges().filter(is_in))
     }
 
     /// Whether the edge of a half-edge belongs to the set.

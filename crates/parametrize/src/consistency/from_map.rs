@@ -3,11 +3,9 @@
 use super::error::ConsistencyError;
 use super::input::{ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet, SeamMatching};
 use super::solve::make_consistent;
-use crate::cut::DualTree;
+use crate::cut::{DualTree, MatchedCut, Unfolding, rotations};
 use crate::features::Sectors;
-use crate::layout::isometric::rotations;
 use crate::progress::Watch;
-use crate::rounding::MatchedCut;
 use num_complex::Complex64;
 use seamstress_mesh::components::components;
 use seamstress_mesh::{Face, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
@@ -110,10 +108,10 @@ pub fn matched_by_angles(
     tree: DualTree,
     angles: &HalfedgeData<f64>,
 ) -> MatchedCut {
-    let mut matched = MatchedCut::new(&Sectors::unaligned(mesh), metric, tree);
-    let rotations = rotations(mesh, angles, &matched.tree, &matched.cut.seams);
-    matched.matching = rotations.iter().map(|r| r.round() as i32).collect();
-    matched
+    let unfolding = Unfolding::new(&Sectors::unaligned(mesh), metric, tree);
+    let rotations = rotations(mesh, angles, &unfolding.tree, &unfolding.cut.seams);
+    let matching = rotations.iter().map(|r| r.round() as i32).collect();
+    MatchedCut { unfolding, matching }
 }
 
 /// Lifted angles of a map of any mesh, the index of every interior vertex that goes with them (zero
@@ -165,7 +163,7 @@ pub fn consistent_cut(
     options: &ConsistencyOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(MatchedCut, Consistent), ConsistencyError> {
-    let pairs = matched.cut.seams.iter().zip(&matched.matching);
+    let pairs = matched.unfolding.cut.seams.iter().zip(&matched.matching);
     let seams: Vec<SeamMatching> = pairs
         .map(|(&left, &r)| SeamMatching { left, matching: f64::from(r), set: MatchingSet::Integer })
         .collect();
@@ -177,5 +175,5 @@ pub fn consistent_cut(
     let input = ConsistencyInput { angles, indices: &indices, seams: &seams };
     let consistent = make_consistent(mesh, &input, options, watch)?;
     let matching = consistent.matchings.iter().map(|r| r.round() as i32).collect();
-    Ok((MatchedCut { matching, ..matched.clone() }, consistent))
+    Ok((MatchedCut { unfolding: matched.unfolding.clone(), matching }, consistent))
 }

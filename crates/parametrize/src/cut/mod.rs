@@ -6,14 +6,16 @@ mod gauge;
 pub(crate) mod isometric;
 mod matched;
 mod steiner;
+mod unfolding;
 
 pub use chains::{Chain, SeamGraph};
 pub use dual_tree::{DualTree, curvature_weight, flatter_end};
 pub use gauge::{regauge, turned_vertices};
 pub use isometric::{frames_of_angles, rotations, unfold};
-pub use matched::MatchedCut;
+pub use matched::{FramedCut, MatchedCut};
 pub(crate) use steiner::DisjointSets;
 pub use steiner::connect_cones;
+pub use unfolding::Unfolding;
 
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh};
 

@@ -4,7 +4,7 @@ mod bounds;
 mod conflicts;
 mod sectors;
 
-pub use bounds::index_bounds;
+pub use bounds::{QUARTERS_PER_CORNER, index_bounds};
 pub use conflicts::{ReleaseReason, ReleasedFeature};
 pub(crate) use conflicts::{drop_conflicts, release_near};
 pub(crate) use sectors::LARGEST_INDEX;

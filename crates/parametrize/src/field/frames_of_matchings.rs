@@ -2,8 +2,8 @@
 
 use super::cross_field::rotations;
 use super::face_laplacian::{FaceMatrix, nearest_angles};
-use crate::cut::MatchedCut;
 use crate::cut::isometric::headings;
+use crate::cut::{MatchedCut, Unfolding};
 use crate::quarter::{direction, rotation};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
@@ -24,23 +24,23 @@ pub fn smooth_frames(
     matched: &MatchedCut,
 ) -> Result<Vec<Complex64>, NotPositiveDefinite> {
     let mut turned = HalfedgeData::filled(mesh.n_halfedges(), 0.0);
-    for ((&h, &r), r0) in matched.cut.seams.iter().zip(&matched.matching).zip(&matched.isometric) {
-        turned[h] = f64::from(r) - r0;
+    for (&h, excess) in matched.unfolding.cut.seams.iter().zip(matched.excess()) {
+        turned[h] = excess;
     }
     let edges: Vec<Halfedge> = mesh.interior_edges().collect();
     let mut matrix = FaceMatrix::new(mesh)?;
     let angles = nearest_angles(&mut matrix, |_| 1.0, |e| turned[edges[e]])?;
-    Ok(frames_of(mesh, metric, matched, &angles))
+    Ok(frames_of(mesh, metric, &matched.unfolding, &angles))
 }
 
 /// Frames turned by these angles, in quarters, against the isometric layout of a cut.
 pub(super) fn frames_of(
     mesh: &TriMesh,
     metric: &Metric,
-    matched: &MatchedCut,
+    unfolding: &Unfolding,
     angles: &[f64],
 ) -> Vec<Complex64> {
-    let heading = headings(mesh, &metric.angle, &matched.tree);
+    let heading = headings(mesh, &metric.angle, &unfolding.tree);
     heading.iter().zip(angles).map(|(h, x)| rotation(h / FRAC_PI_2 + x)).collect()
 }
 

@@ -3,26 +3,19 @@
 use super::FieldError;
 use super::cross_field::CrossField;
 use super::frames_of_matchings::spectral_frames;
-use crate::cut::{DualTree, MatchedCut, curvature_weight, regauge};
-use crate::features::Sectors;
+use crate::cut::{FramedCut, MatchedCut, Unfolding, regauge};
 use crate::quarter::turn;
-use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{HalfedgeData, Metric, TriMesh};
 
-/// The matchings of a field over an all-seam cut of a connected mesh, and the frames in its gauge.
+/// The matchings of a field over an unfolded connected mesh with nothing aligned, and its frames in that gauge.
 ///
 /// A gauge of whole quarters changes neither the index of a vertex nor that of a loop, so lifts carry over
 /// but for one convention: the isometric layout has no rotation across its tree, while rotations of
 /// independent faces are read from the left half-edge and come out a full turn larger where the parent
 /// face is on the right.
-pub fn matched_cut(
-    mesh: &TriMesh,
-    metric: &Metric,
-    field: &CrossField,
-) -> (MatchedCut, Vec<Complex64>) {
-    let sectors = Sectors::unaligned(mesh);
-    let tree = DualTree::lightest(mesh, curvature_weight(mesh, metric));
+pub fn matched_cut(mesh: &TriMesh, unfolding: Unfolding, field: &CrossField) -> FramedCut {
+    let tree = &unfolding.tree;
     let mut full = field.matching().clone();
     for (parent, child) in tree.parent.iter().filter_map(|h| Some(((*h)?, mesh.twin((*h)?)?))) {
         if child < parent {
@@ -30,13 +23,10 @@ pub fn matched_cut(
             full[parent] += 4;
         }
     }
-    let (moved, gauge) = regauge(mesh, &tree, &full);
-    let mut matched = MatchedCut::new(&sectors, metric, tree);
-    for (r, &h) in matched.matching.iter_mut().zip(&matched.cut.seams) {
-        *r = moved[h];
-    }
+    let (moved, gauge) = regauge(mesh, tree, &full);
+    let matching = unfolding.cut.seams.iter().map(|&h| moved[h]).collect();
     let frames = field.frames().iter().zip(gauge.iter()).map(|(&r, &k)| turn(r, k)).collect();
-    (matched, frames)
+    FramedCut { matched: MatchedCut { unfolding, matching }, frames }
 }
 
 /// Why matchings alone give no field.

@@ -25,5 +25,5 @@ pub use lift::{LiftError, lift};
 pub use matched::{ResidualFieldError, matched_cut, residual_field};
 pub(crate) use prescription::check_angle;
 pub use prescription::{ConePrescription, PrescriptionError};
-pub use smooth::{SmoothError, SmoothStats, smooth_field};
+pub use smooth::{SmoothStats, smooth_field};
 pub use transfer::impose;

@@ -2,9 +2,8 @@
 
 use super::face_laplacian::{FaceMatrix, nearest_angles};
 use super::frames_of_matchings::frames_of;
-use crate::cut::MatchedCut;
-use crate::progress::{Cancelled, Watch};
-use num_complex::Complex64;
+use crate::cut::{FramedCut, MatchedCut, Unfolding};
+use crate::progress::{SolveError, Watch};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
 
@@ -17,18 +16,6 @@ pub struct SmoothStats {
     pub solves: usize,
     /// Mean over interior edges of the squared rotation of the cross across it, quarters squared.
     pub energy: f64,
-}
-
-/// Why a field was not finished.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SmoothError {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// A linear system could not be solved.
-    #[error(transparent)]
-    Numeric(#[from] NotPositiveDefinite),
 }
 
 /// Rounds in which the largest turn that is rounded grows linearly to one half, which is all.
@@ -44,18 +31,18 @@ const SOLVE_SHARE: f64 = 0.005;
 ///
 /// Greedy, as in the paper: while all other jumps are real, those nearest to integers are rounded and held
 /// and the angles solved anew. The paper rounds one at a time; here a round takes all up to a bound that
-/// grows. Returns the frames, in the gauge of the cut.
+/// grows.
 ///
 /// # Errors
-/// [`SmoothError`].
+/// [`SolveError`].
 pub fn smooth_field(
     mesh: &TriMesh,
     metric: &Metric,
-    matched: &mut MatchedCut,
+    unfolding: Unfolding,
     watch: &mut Watch<'_, '_>,
-) -> Result<(Vec<Complex64>, SmoothStats), SmoothError> {
-    let mut work = Rounding::new(mesh, matched)?;
-    let mut open: Vec<u32> = (0..matched.matching.len() as u32).collect();
+) -> Result<(FramedCut, SmoothStats), SolveError> {
+    let mut work = FieldRounding::new(mesh, &unfolding)?;
+    let mut open: Vec<u32> = (0..unfolding.cut.seams.len() as u32).collect();
     let total = open.len().max(1) as f64;
     let mut stats = SmoothStats::default();
     let mut since_solve = 0;
@@ -63,9 +50,9 @@ pub fn smooth_field(
         watch.tick(1.0 - open.len() as f64 / total)?;
         stats.rounds += 1;
         let bound = 0.5 * (stats.rounds as f64 / ROUNDS as f64).min(1.0);
-        let chosen = work.choose(mesh, matched, &open, bound);
+        let chosen = work.choose(mesh, &open, bound);
         for &(seam, integer) in &chosen {
-            matched.matching[seam as usize] = integer;
+            work.matching[seam as usize] = integer;
             work.held[work.edge_of_seam[seam as usize] as usize] = true;
         }
         open.retain(|&seam| !work.held[work.edge_of_seam[seam as usize] as usize]);
@@ -74,14 +61,19 @@ pub fn smooth_field(
         if is_due && since_solve > 0 {
             since_solve = 0;
             stats.solves += 1;
-            work.solve(matched)?;
+            work.solve()?;
         }
     }
-    stats.energy = work.energy(matched);
-    Ok((frames_of(mesh, metric, matched, &work.angles), stats))
+    stats.energy = work.energy();
+    let FieldRounding { matching, angles, .. } = work;
+    let frames = frames_of(mesh, metric, &unfolding, &angles);
+    Ok((FramedCut { matched: MatchedCut { unfolding, matching }, frames }, stats))
 }
 
-struct Rounding {
+struct FieldRounding<'a> {
+    unfolding: &'a Unfolding,
+    /// Integer of each seam; zero where it has none yet.
+    matching: Vec<i32>,
     matrix: FaceMatrix<f64>,
     /// Interior edge of each seam, and the seam of each edge.
     edge_of_seam: Vec<u32>,
@@ -92,17 +84,19 @@ struct Rounding {
     angles: Vec<f64>,
 }
 
-impl Rounding {
-    fn new(mesh: &TriMesh, matched: &MatchedCut) -> Result<Self, NotPositiveDefinite> {
+impl<'a> FieldRounding<'a> {
+    fn new(mesh: &TriMesh, unfolding: &'a Unfolding) -> Result<Self, NotPositiveDefinite> {
         let edges: Vec<Halfedge> = mesh.interior_edges().collect();
         let mut seam_of_edge = vec![None; edges.len()];
-        let mut edge_of_seam = Vec::with_capacity(matched.cut.seams.len());
-        for (e, _) in edges.iter().enumerate().filter(|(_, h)| matched.cut.is_seam[**h]) {
+        let mut edge_of_seam = Vec::with_capacity(unfolding.cut.seams.len());
+        for (e, _) in edges.iter().enumerate().filter(|(_, h)| unfolding.cut.is_seam[**h]) {
             // Both are listed by left half-edge, ascending.
             seam_of_edge[e] = Some(edge_of_seam.len() as u32);
             edge_of_seam.push(e as u32);
         }
         Ok(Self {
+            unfolding,
+            matching: vec![0; edge_of_seam.len()],
             matrix: FaceMatrix::new(mesh)?,
             held: seam_of_edge.iter().map(Option::is_none).collect(),
             edge_of_seam,
@@ -112,21 +106,16 @@ impl Rounding {
     }
 
     /// Rotation of a seam at the present angles, quarters.
-    fn rotation(&self, matched: &MatchedCut, seam: u32) -> f64 {
+    fn rotation(&self, seam: u32) -> f64 {
         let [left, right] = self.matrix.faces()[self.edge_of_seam[seam as usize] as usize];
-        matched.isometric[seam as usize] + self.angles[right as usize] - self.angles[left as usize]
+        self.unfolding.isometric[seam as usize] + self.angles[right as usize]
+            - self.angles[left as usize]
     }
 
     /// Seams to round now with their integers, least turns first.
-    fn choose(
-        &self,
-        mesh: &TriMesh,
-        matched: &MatchedCut,
-        open: &[u32],
-        bound: f64,
-    ) -> Vec<(u32, i32)> {
+    fn choose(&self, mesh: &TriMesh, open: &[u32], bound: f64) -> Vec<(u32, i32)> {
         let candidate = |&seam: &u32| {
-            let r = self.rotation(matched, seam);
+            let r = self.rotation(seam);
             ((r - r.round()).abs(), seam, r.round() as i32)
         };
         let mut candidates: Vec<(f64, u32, i32)> =
@@ -134,7 +123,7 @@ impl Rounding {
         candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut used = VertexData::filled(mesh.n_vertices(), false);
         candidates.retain(|&(turn, seam, _)| {
-            let h = matched.cut.seams[seam as usize];
+            let h = self.unfolding.cut.seams[seam as usize];
             let ends = [mesh.origin(h), mesh.tip(h)];
             if turn <= LARGE_TURN {
                 return true;
@@ -146,23 +135,23 @@ impl Rounding {
         candidates.into_iter().map(|(_, seam, integer)| (seam, integer)).collect()
     }
 
-    fn target(&self, matched: &MatchedCut, edge: usize) -> f64 {
+    fn target(&self, edge: usize) -> f64 {
         let seam = self.seam_of_edge[edge].map(|s| s as usize);
-        seam.map_or(0.0, |s| f64::from(matched.matching[s]) - matched.isometric[s])
+        seam.map_or(0.0, |s| f64::from(self.matching[s]) - self.unfolding.isometric[s])
     }
 
-    fn solve(&mut self, matched: &MatchedCut) -> Result<(), NotPositiveDefinite> {
-        let target: Vec<f64> = (0..self.held.len()).map(|e| self.target(matched, e)).collect();
+    fn solve(&mut self) -> Result<(), NotPositiveDefinite> {
+        let target: Vec<f64> = (0..self.held.len()).map(|e| self.target(e)).collect();
         let held = &self.held;
         let weight = |e: usize| if held[e] { 1.0 } else { 0.0 };
         self.angles = nearest_angles(&mut self.matrix, weight, |e| target[e])?;
         Ok(())
     }
 
-    fn energy(&self, matched: &MatchedCut) -> f64 {
+    fn energy(&self) -> f64 {
         let square = |(e, &[left, right]): (usize, &[u32; 2])| {
             let turn = self.angles[right as usize] - self.angles[left as usize];
-            (self.target(matched, e) - turn).powi(2)
+            (self.target(e) - turn).powi(2)
         };
         let n = self.held.len().max(1) as f64;
         self.matrix.faces().iter().enumerate().map(square).sum::<f64>() / n

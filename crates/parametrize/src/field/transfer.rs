@@ -10,8 +10,8 @@ use std::collections::VecDeque;
 /// distorts less than a cone torn from its place.
 const REACH: u32 = 12;
 
-/// Shifts matchings of a connected mesh without aligned edges until every prescribed index is met; returns how many shifts it
-/// took.
+/// Shifts matchings of a connected mesh without aligned edges until every prescribed index is met; counts the
+/// shifts.
 ///
 /// A vertex with a unit too many or too few passes it along a shortest path of edges. It goes to the
 /// nearest vertex that needs it, to a free cone near by that it cancels, or over the boundary; else to the
@@ -22,9 +22,9 @@ const REACH: u32 = 12;
 pub fn impose(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    matched: &mut MatchedCut,
+    matched: &MatchedCut,
     prescription: &ConePrescription,
-) -> Result<usize, PrescriptionError> {
+) -> Result<(MatchedCut, usize), PrescriptionError> {
     let mesh = sectors.mesh();
     let mut transfer = Transfer {
         mesh,
@@ -47,8 +47,8 @@ pub fn impose(
             transfer.send(&path, unit);
         }
     }
-    matched.turn(sectors, &transfer.transport);
-    Ok(shifts)
+    let (matched, _) = matched.turned(sectors, &transfer.transport);
+    Ok((matched, shifts))
 }
 
 struct Transfer<'a> {

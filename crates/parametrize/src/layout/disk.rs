@@ -11,14 +11,26 @@ pub fn is_disk(mesh: &TriMesh) -> bool {
     mesh.genus() == 0 && mesh.n_boundary_loops() == 1
 }
 
+/// Why a mesh has no first layout as a disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiskError {
+    /// It has handles, or not exactly one boundary loop.
+    #[error("it is not a disk")]
+    NotADisk,
+    /// The linear system could not be solved.
+    #[error(transparent)]
+    Numeric(#[from] NotPositiveDefinite),
+}
+
 /// Positions of the corners, three per face, with the boundary on a circle of the mesh's area, spaced by
 /// length. No triangle is flipped, in exact arithmetic: the polygon is strictly convex.
 ///
 /// # Errors
-/// When the mesh is not a disk, or the system cannot be factored.
-pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, NotPositiveDefinite> {
+/// [`DiskError`].
+pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, DiskError> {
     if !is_disk(mesh) {
-        return Err(NotPositiveDefinite);
+        return Err(DiskError::NotADisk);
     }
     let n = mesh.n_vertices();
     let mut z = on_circle(mesh, metric);
@@ -100,6 +112,6 @@ mod tests {
         let soup = kit::icosphere(1);
         let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
         let metric = Metric::from_positions(&mesh, &soup.positions);
-        assert!(embed_disk(&mesh, &metric).is_err());
+        assert_eq!(embed_disk(&mesh, &metric), Err(DiskError::NotADisk));
     }
 }

@@ -9,30 +9,19 @@ use super::newton::{NewtonOptions, minimize};
 use super::penalty::SeamPenalty;
 use super::problem::LayoutProblem;
 use super::space::LinearSpace;
-use crate::cut::{MatchedCut, unfold};
+use crate::cut::{MatchedCut, Unfolding};
 use crate::energy::{SymmetricDirichlet, Triangle, triangles};
 use crate::features::Sectors;
-use crate::progress::{Cancelled, Watch};
+use crate::progress::{Cancelled, SolveError, Watch};
 use crate::quarter::{rotation, unit};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Metric, TriMesh, VertexData};
 use std::f64::consts::FRAC_PI_2;
 
-/// Why a homotopy gave nothing.
-#[derive(Debug, thiserror::Error)]
-pub enum HomotopyError {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The linear system could not be set up.
-    #[error(transparent)]
-    Numeric(#[from] NotPositiveDefinite),
-}
-
 /// A layout of the all-seam cut with nearly closed seams.
 #[derive(Debug, Clone)]
-pub struct Closed {
+pub struct PenaltyLayout {
     /// Wedge positions.
     pub z: Vec<Complex64>,
     /// Newton steps taken.
@@ -51,9 +40,9 @@ pub fn barrier(
     metric: &Metric,
     matched: &MatchedCut,
     watch: &mut Watch<'_, '_>,
-) -> Result<Closed, HomotopyError> {
+) -> Result<PenaltyLayout, SolveError> {
     let targets = matched.matching.iter().map(|&r| unit(r)).collect();
-    let mut run = Run::new(sectors, metric, matched, targets)?;
+    let mut run = SeamHomotopy::new(sectors, metric, &matched.unfolding, targets)?;
     for (k, weight) in BARRIER_WEIGHTS.into_iter().enumerate() {
         watch.tick(k as f64 / BARRIER_WEIGHTS.len() as f64)?;
         run.relax(weight, &BARRIER_STEPS, watch)?;
@@ -89,22 +78,22 @@ pub fn continuation(
     matched: &MatchedCut,
     settings: &Continuation,
     watch: &mut Watch<'_, '_>,
-) -> Result<Closed, HomotopyError> {
-    let change: Vec<f64> =
-        matched.matching.iter().zip(&matched.isometric).map(|(&r, r0)| f64::from(r) - r0).collect();
+) -> Result<PenaltyLayout, SolveError> {
+    let unfolding = &matched.unfolding;
+    let change: Vec<f64> = matched.excess().collect();
     let at = |s: f64| -> Vec<f64> {
-        matched.isometric.iter().zip(&change).map(|(r0, d)| r0 + s * d).collect()
+        unfolding.isometric.iter().zip(&change).map(|(r0, d)| r0 + s * d).collect()
     };
     let turns = |r: &[f64]| r.iter().map(|&r| rotation(r)).collect::<Vec<_>>();
     let widest = change.iter().fold(0.0f64, |m, d| m.max(d.abs())).max(1e-9);
     let first_step = (settings.largest_turn / widest).min(1.0);
-    let mut run = Run::new(sectors, metric, matched, turns(&matched.isometric))?;
+    let mut run = SeamHomotopy::new(sectors, metric, unfolding, turns(&unfolding.isometric))?;
     let (mut s, mut step, mut weight) = (0.0, first_step, CONTINUATION_WEIGHT);
     while s < 1.0 - 1e-12 && run.steps < CONTINUATION_MOST_STEPS {
         watch.tick(s)?;
         let next = (s + step).min(1.0);
         let r = at(next);
-        let index = matched.indices(sectors, metric, &r);
+        let index = unfolding.indices(sectors, metric, &r);
         run.set_targets(turns(&r));
         let before = run.y.clone();
         let mut tried = weight;
@@ -140,25 +129,24 @@ pub fn continuation(
     Ok(run.finish())
 }
 
-struct Run {
+struct SeamHomotopy {
     problem: LayoutProblem,
     y: Vec<f64>,
     steps: usize,
 }
 
-impl Run {
+impl SeamHomotopy {
     fn new(
         sectors: &Sectors<'_>,
         metric: &Metric,
-        matched: &MatchedCut,
+        unfolding: &Unfolding,
         targets: Vec<Complex64>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let slit = sectors.slit();
-        let z = unfold(slit, metric, &matched.tree, &matched.cut);
-        let penalty = SeamPenalty::new(sectors, matched, targets, 0.0);
+        let z = unfolding.positions(sectors, metric);
+        let penalty = SeamPenalty::new(sectors, unfolding, targets, 0.0);
         let problem = LayoutProblem::new(
-            LinearSpace::free(matched.cut.n_wedges),
-            triangles(slit, metric, &matched.cut),
+            LinearSpace::free(unfolding.cut.n_wedges),
+            triangles(sectors.slit(), metric, &unfolding.cut),
             Some(penalty),
         )?;
         let y = z.iter().flat_map(|z| [z.re, z.im]).collect();
@@ -198,10 +186,10 @@ impl Run {
             .fold(0.0, f64::max)
     }
 
-    fn finish(self) -> Closed {
+    fn finish(self) -> PenaltyLayout {
         let z = self.problem.space().expand(&self.y);
         let gap = self.problem.penalty.as_ref().map_or(0.0, |p| p.largest_gap(&z));
-        Closed { z, steps: self.steps, gap }
+        PenaltyLayout { z, steps: self.steps, gap }
     }
 }
 

@@ -8,12 +8,13 @@ pub mod disk;
 mod element;
 pub mod exact;
 pub mod homotopy;
+pub mod ladder;
 pub mod newton;
 pub mod objective;
 pub mod penalty;
 pub mod polish;
 pub mod problem;
-pub mod safeguards;
+pub mod route;
 pub mod space;
 
 // Old paths of what moved to `cut` and `energy`.

@@ -1,6 +1,6 @@
 //! Soft closing of seams, for the homotopies.
 
-use crate::cut::MatchedCut;
+use crate::cut::Unfolding;
 use crate::features::Sectors;
 use num_complex::Complex64;
 use seamstress_linalg::Assembly;
@@ -127,17 +127,17 @@ impl SeamPenalty {
     /// from the axes; `rotations` are those of the turning edges.
     pub fn new(
         sectors: &Sectors<'_>,
-        matched: &MatchedCut,
+        unfolding: &Unfolding,
         rotations: Vec<Complex64>,
         weight: f64,
     ) -> Self {
-        let cut = &matched.cut;
+        let cut = &unfolding.cut;
         let seam = |&h| SeamElement::new(cut.seam_wedges(sectors.slit(), h));
         let mut axis_of = HalfedgeData::filled(sectors.slit().n_halfedges(), 0);
         sectors.aligned().enumerate().for_each(|(k, h)| axis_of[h] = k);
         let axis = |h| AxisElement { ends: cut.ends(h), turning: None };
         let mut axes: Vec<AxisElement> = sectors.aligned().map(axis).collect();
-        for (k, &h) in matched.turning.iter().enumerate().skip(cut.seams.len()) {
+        for (k, &h) in unfolding.turning.iter().enumerate().skip(cut.seams.len()) {
             axes[axis_of[h]].turning = Some(k as u32);
         }
         let link = |[h, t]: [Halfedge; 2]| {

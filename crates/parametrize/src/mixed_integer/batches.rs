@@ -1,11 +1,10 @@
 //! The rounding loop: batch after batch of integer variables.
 
-use super::program::{BatchProgram, MOST_TAU, Placed, rotation};
-use super::search::{Found, Limits, search};
+use super::program::{BatchLayout, BatchProgram, MOST_TAU, rotation};
+use super::search::{Limits, SearchResult, search};
 use super::{BatchStats, MixedIntegerOptions, MixedIntegerStats};
-use crate::cut::{MatchedCut, frames_of_angles, unfold};
+use crate::cut::{FramedCut, MatchedCut, Unfolding, frames_of_angles, unfold};
 use crate::progress::{Cancelled, Watch};
-use num_complex::Complex64;
 use seamstress_mesh::{Metric, TriMesh};
 use web_time::Instant;
 
@@ -27,13 +26,13 @@ const SAME: f64 = 1e-9;
 pub fn round_mixed_integer(
     mesh: &TriMesh,
     metric: &Metric,
-    matched: &mut MatchedCut,
+    unfolding: Unfolding,
     options: &MixedIntegerOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(Vec<Complex64>, MixedIntegerStats), Cancelled> {
+) -> Result<(FramedCut, MixedIntegerStats), Cancelled> {
     let deadline = options.time_limit.map(|limit| Instant::now() + limit);
     let limits = Limits { nodes: options.nodes.max(1), deadline, tolerance: options.tolerance };
-    let mut state = Rounding::begin(mesh, metric, matched);
+    let mut state = BatchRounding::begin(mesh, metric, unfolding);
     let mut stats = MixedIntegerStats::default();
     let most = options.batch.max(1);
     let mut size = most;
@@ -57,8 +56,8 @@ pub fn round_mixed_integer(
         let values =
             found.incumbent.map(|best| (best.values.into_iter().map(Some).collect(), best.state));
         match values.or(found.partial) {
-            Some((values, placed)) => {
-                state.take(&batch, &values, placed);
+            Some((values, layout)) => {
+                state.take(&batch, &values, layout);
                 size = (2 * batch.len()).min(most);
             }
             None if batch.len() > 1 => size = batch.len() / 2,
@@ -68,39 +67,40 @@ pub fn round_mixed_integer(
     }
     let rest: Vec<usize> = state.open().collect();
     stats.left_to_nearest += state.round_to_nearest(&rest);
-    let Rounding { rounded, placed, .. } = state;
-    for (r, rounded) in matched.matching.iter_mut().zip(rounded) {
-        *r = rounded.unwrap_or(*r);
-    }
-    Ok((placed.frames, stats))
+    let BatchRounding { unfolding, rounded, layout, .. } = state;
+    let nearest = unfolding.isometric.iter().map(|r| r.round() as i32);
+    let matching = rounded.into_iter().zip(nearest).map(|(r, r0)| r.unwrap_or(r0)).collect();
+    let matched = MatchedCut { unfolding, matching };
+    Ok((FramedCut { matched, frames: layout.frames }, stats))
 }
 
 /// Matchings on their way to integers.
-struct Rounding<'a> {
+struct BatchRounding<'a> {
     mesh: &'a TriMesh,
     metric: &'a Metric,
-    matched: MatchedCut,
+    unfolding: Unfolding,
     /// Integer of each seam that has one.
     rounded: Vec<Option<i32>>,
     /// Rotation of each seam in the last layout.
     rotation: Vec<f64>,
     /// The last layout.
-    placed: Placed,
+    layout: BatchLayout,
 }
 
-impl<'a> Rounding<'a> {
+impl<'a> BatchRounding<'a> {
     /// From the isometric layout.
-    fn begin(mesh: &'a TriMesh, metric: &'a Metric, matched: &MatchedCut) -> Self {
-        let z = unfold(mesh, metric, &matched.tree, &matched.cut);
-        let corner = mesh.halfedges().map(|h| z[matched.cut.wedge[h] as usize]).collect();
-        let frames = frames_of_angles(mesh, metric, &metric.angle, &matched.tree);
+    fn begin(mesh: &'a TriMesh, metric: &'a Metric, unfolding: Unfolding) -> Self {
+        let Unfolding { tree, cut, .. } = &unfolding;
+        let z = unfold(mesh, metric, tree, cut);
+        let corner = mesh.halfedges().map(|h| z[cut.wedge[h] as usize]).collect();
+        let frames = frames_of_angles(mesh, metric, &metric.angle, tree);
         Self {
             mesh,
             metric,
-            rounded: vec![None; matched.turning.len()],
-            rotation: matched.isometric.clone(),
-            placed: Placed { corner, frames },
-            matched: matched.clone(),
+            rounded: vec![None; unfolding.turning.len()],
+            rotation: unfolding.isometric.clone(),
+            layout: BatchLayout { corner, frames },
+            unfolding,
         }
     }
 
@@ -131,34 +131,34 @@ impl<'a> Rounding<'a> {
         batch: &[usize],
         limits: &Limits,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<Found<Placed>, Cancelled> {
+    ) -> Result<SearchResult<BatchLayout>, Cancelled> {
         let mut program = BatchProgram {
             mesh: self.mesh,
             metric: self.metric,
-            matched: &self.matched,
+            turning: &self.unfolding.turning,
             rounded: &self.rounded,
             batch,
             rotation: &self.rotation,
-            frames: &self.placed.frames,
+            frames: &self.layout.frames,
             tolerance: limits.tolerance,
         };
         let next = |&seam: &usize| two_nearest(self.rotation[seam]);
         let choices: Vec<[i32; 2]> = batch.iter().map(next).collect();
-        search(&mut program, &choices, &self.placed, limits, watch)
+        search(&mut program, &choices, &self.layout, limits, watch)
     }
 
     /// Rounds what was decided of a batch and moves on to its layout.
-    fn take(&mut self, batch: &[usize], values: &[Option<i32>], placed: Placed) {
+    fn take(&mut self, batch: &[usize], values: &[Option<i32>], layout: BatchLayout) {
         for (&seam, &value) in batch.iter().zip(values) {
             self.rounded[seam] = value;
         }
         for seam in 0..self.rounded.len() {
             if self.rounded[seam].is_none() {
-                let h = self.matched.turning[seam];
-                self.rotation[seam] = rotation(self.mesh, h, &placed.corner, self.rotation[seam]);
+                let h = self.unfolding.turning[seam];
+                self.rotation[seam] = rotation(self.mesh, h, &layout.corner, self.rotation[seam]);
             }
         }
-        self.placed = placed;
+        self.layout = layout;
     }
 
     fn round_to_nearest(&mut self, seams: &[usize]) -> usize {

@@ -1,7 +1,6 @@
 //! The bounded-distortion program (9) over layouts in which only the rounded seams close.
 
 use super::search::{Relax, Relaxed, Verdict};
-use crate::cut::MatchedCut;
 use crate::layout::conic::interior_point::{self, Renewal};
 use crate::layout::conic::{Outcome, Program, ProgramKind, Solver, SolverOptions, solve};
 use crate::layout::exact::ExactLayout;
@@ -14,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Positions of the corners of each face, and its frame, in the gauge of the all-seam cut.
 #[derive(Debug, Clone)]
-pub(super) struct Placed {
+pub(super) struct BatchLayout {
     pub(super) corner: HalfedgeData<Complex64>,
     pub(super) frames: Vec<Complex64>,
 }
@@ -24,7 +23,8 @@ pub(super) struct Placed {
 pub(super) struct BatchProgram<'a> {
     pub(super) mesh: &'a TriMesh,
     pub(super) metric: &'a Metric,
-    pub(super) matched: &'a MatchedCut,
+    /// The half-edges of all seams.
+    pub(super) turning: &'a [Halfedge],
     /// Matchings rounded before, by seam.
     pub(super) rounded: &'a [Option<i32>],
     /// Seams of the batch.
@@ -44,14 +44,14 @@ pub(super) const MOST_TAU: f64 = 4.0;
 const DEVIATION_GAP: f64 = 5e-4;
 
 impl Relax for BatchProgram<'_> {
-    type State = Placed;
+    type State = BatchLayout;
 
     fn relax(
         &mut self,
         values: &[Option<i32>],
-        from: &Placed,
+        from: &BatchLayout,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<Verdict<Placed>, Cancelled> {
+    ) -> Result<Verdict<BatchLayout>, Cancelled> {
         let mut rounded = self.rounded.to_vec();
         for (&seam, &value) in self.batch.iter().zip(values) {
             rounded[seam] = value;
@@ -64,7 +64,7 @@ impl Relax for BatchProgram<'_> {
 
     fn are_close(&self, a: usize, b: usize) -> bool {
         let ends = |k: usize| {
-            let h = self.matched.turning[self.batch[k]];
+            let h = self.turning[self.batch[k]];
             [self.mesh.origin(h), self.mesh.tip(h)]
         };
         let (a, b) = (ends(a), ends(b));
@@ -78,9 +78,9 @@ impl BatchProgram<'_> {
     fn solve(
         &self,
         rounded: &[Option<i32>],
-        from: &Placed,
+        from: &BatchLayout,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<Result<Verdict<Placed>, NotPositiveDefinite>, Cancelled> {
+    ) -> Result<Result<Verdict<BatchLayout>, NotPositiveDefinite>, Cancelled> {
         let (slit, matching) = self.slit(rounded);
         let (mut layout, start) = match self.start(&slit, &matching, from) {
             Ok(started) => started,
@@ -105,7 +105,7 @@ impl BatchProgram<'_> {
                     value: solution.objective.sqrt(),
                     bound: (solution.objective * (1.0 - solution.gap)).max(1.0).sqrt(),
                     position: self.batch.iter().map(|&seam| self.position(seam, &corner)).collect(),
-                    state: Placed { corner, frames: layout.frames(&solution.y) },
+                    state: BatchLayout { corner, frames: layout.frames(&solution.y) },
                 })
             }
             Outcome::Infeasible => Verdict::Infeasible,
@@ -117,7 +117,7 @@ impl BatchProgram<'_> {
     fn slit(&self, rounded: &[Option<i32>]) -> (TriMesh, HalfedgeData<i32>) {
         let mut open = HalfedgeData::filled(self.mesh.n_halfedges(), false);
         let mut matching = HalfedgeData::filled(self.mesh.n_halfedges(), 0);
-        for (&h, value) in self.matched.turning.iter().zip(rounded) {
+        for (&h, value) in self.turning.iter().zip(rounded) {
             let Some(t) = self.mesh.twin(h) else { continue };
             match value {
                 None => (open[h], open[t]) = (true, true),
@@ -128,7 +128,7 @@ impl BatchProgram<'_> {
     }
 
     fn position(&self, seam: usize, corner: &HalfedgeData<Complex64>) -> f64 {
-        rotation(self.mesh, self.matched.turning[seam], corner, self.rotation[seam])
+        rotation(self.mesh, self.turning[seam], corner, self.rotation[seam])
     }
 
     /// The exact layouts, and the one nearest to the layout given.
@@ -136,7 +136,7 @@ impl BatchProgram<'_> {
         &self,
         slit: &TriMesh,
         matching: &HalfedgeData<i32>,
-        from: &Placed,
+        from: &BatchLayout,
     ) -> Result<(ExactLayout, Vec<f64>), NotPositiveDefinite> {
         let mut layout = ExactLayout::closing(slit, self.metric, matching)?;
         let start = layout.nearest(slit, &from.corner)?;

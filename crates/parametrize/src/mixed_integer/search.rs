@@ -50,7 +50,7 @@ pub(super) struct Limits {
 }
 
 /// What was found.
-pub(super) struct Found<S> {
+pub(super) struct SearchResult<S> {
     pub(super) incumbent: Option<Incumbent<S>>,
     /// Without an incumbent: what the node that the search ended at had decided, if anything, and its layout.
     pub(super) partial: Option<(Vec<Option<i32>>, S)>,
@@ -91,8 +91,9 @@ pub(super) fn search<R: Relax>(
     from: &R::State,
     limits: &Limits,
     watch: &mut Watch<'_, '_>,
-) -> Result<Found<R::State>, Cancelled> {
-    let mut search = Search { choices, limits, incumbent: None, lost: f64::INFINITY, nodes: 0 };
+) -> Result<SearchResult<R::State>, Cancelled> {
+    let mut search =
+        BranchAndBound { choices, limits, incumbent: None, lost: f64::INFINITY, nodes: 0 };
     let undecided = vec![None; choices.len()];
     let mut stack: Vec<Open<R::State>> = Vec::new();
     let mut is_exhausted = true;
@@ -188,7 +189,7 @@ impl<S> Open<S> {
     }
 }
 
-struct Search<'a, S> {
+struct BranchAndBound<'a, S> {
     choices: &'a [[i32; 2]],
     limits: &'a Limits,
     incumbent: Option<Incumbent<S>>,
@@ -197,7 +198,7 @@ struct Search<'a, S> {
     nodes: usize,
 }
 
-impl<S> Search<'_, S> {
+impl<S> BranchAndBound<'_, S> {
     /// Nodes with this bound cannot lead to anything better by the tolerance.
     fn cutoff(&self) -> f64 {
         let best = self.incumbent.as_ref().map_or(f64::INFINITY, |best| best.value);
@@ -279,7 +280,7 @@ impl<S> Search<'_, S> {
         group
     }
 
-    fn finish(self, open: f64, is_exhausted: bool, last: Option<Open<S>>) -> Found<S> {
+    fn finish(self, open: f64, is_exhausted: bool, last: Option<Open<S>>) -> SearchResult<S> {
         let cutoff = self.cutoff();
         let best = self.incumbent.as_ref().map_or(f64::INFINITY, |best| best.value);
         let bound = match is_exhausted {
@@ -289,7 +290,7 @@ impl<S> Search<'_, S> {
         let is_exhausted = is_exhausted && self.lost >= cutoff;
         let partial = last.filter(|_| self.incumbent.is_none());
         let partial = partial.map(|last| (last.values, last.relaxed.state));
-        Found { incumbent: self.incumbent, partial, bound, nodes: self.nodes, is_exhausted }
+        SearchResult { incumbent: self.incumbent, partial, bound, nodes: self.nodes, is_exhausted }
     }
 }
 
@@ -356,7 +357,7 @@ mod tests {
         (Quadratic { centre, weight, coupling: 0.3 }, choices)
     }
 
-    fn run(seed: u64, n: usize, nodes: usize) -> (Found<()>, Quadratic, Vec<[i32; 2]>) {
+    fn run(seed: u64, n: usize, nodes: usize) -> (SearchResult<()>, Quadratic, Vec<[i32; 2]>) {
         let (mut program, choices) = problem(seed, n);
         let mut go_on = |_| ControlFlow::Continue(());
         let mut watch = Watch::new(&mut go_on, 0, 1);

@@ -1,12 +1,12 @@
 //! Fewer and better placed cones, judged by the surrogate.
 
 use super::surrogate::{Response, Surrogate};
-use crate::cut::MatchedCut;
+use crate::cut::FramedCut;
 use crate::features::{Road, Sectors};
 use crate::ordered::Ordered;
-use crate::progress::{Cancelled, Watch};
+use crate::progress::{Cancelled, SolveError, Watch};
 use seamstress_linalg::NotPositiveDefinite;
-use seamstress_mesh::{FaceData, HalfedgeData, Metric, Vertex, VertexData};
+use seamstress_mesh::{HalfedgeData, Metric, Vertex, VertexData};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, HashMap};
 use std::f64::consts::FRAC_PI_2;
@@ -53,17 +53,6 @@ pub struct CleanUpOptions {
     pub largest_deviation: f64,
 }
 
-/// Why clean-up stopped early.
-#[derive(Debug, thiserror::Error)]
-pub enum CleanUpError {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The surrogate could not be set up.
-    #[error(transparent)]
-    Numeric(#[from] NotPositiveDefinite),
-}
-
 const SWEEPS: usize = 6;
 /// Opposite cones tried for each positive one.
 const PARTNERS: usize = 4;
@@ -75,16 +64,18 @@ const MOVES: usize = 3;
 const LEAST_GAIN: f64 = 1e-6;
 
 /// Cancels pairs of cones and moves cones along edges while the surrogate energy grows by less than
-/// the price per cone removed; changes the matchings along the way. Returns also the quarter turns
-/// by which the faces' gauge changed.
+/// the price per cone removed; the matchings change along the way.
+///
+/// # Errors
+/// [`SolveError`].
 pub fn clean_up(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    matched: &mut MatchedCut,
+    start: &FramedCut,
     options: &CleanUpOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(CleanUpStats, FaceData<i32>), CleanUpError> {
-    let index = matched.sector_indices(sectors, metric);
+) -> Result<(FramedCut, CleanUpStats), SolveError> {
+    let index = start.matched.sector_indices(sectors, metric);
     let mut work = CleanUp::new(sectors, metric, index, *options)?;
     let before = work.count();
     let mut stats = CleanUpStats::default();
@@ -98,8 +89,7 @@ pub fn clean_up(
         }
     }
     stats.saved = before - work.count();
-    let gauge = matched.turn(sectors, &work.transport);
-    Ok((stats, gauge))
+    Ok((start.turned(sectors, &work.transport), stats))
 }
 
 struct CleanUp<'a> {

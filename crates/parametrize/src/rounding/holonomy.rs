@@ -1,6 +1,6 @@
 //! Choosing the rotations around handles and between boundaries for fixed cones.
 
-use crate::cut::MatchedCut;
+use crate::cut::{MatchedCut, Unfolding};
 use crate::features::Sectors;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
@@ -20,27 +20,22 @@ const PASSES: usize = 50;
 /// after the best rotation of every face is its divergence-free part, whose weighted square is made
 /// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too).
 /// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
-/// moves. Returns how many cycles changed.
+/// moves. The cones stay.
 ///
 /// # Errors
 /// When the face Laplacian cannot be factored.
 pub fn fix_holonomy(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    matched: &mut MatchedCut,
-) -> Result<usize, NotPositiveDefinite> {
-    let cycles = turning_cycles(sectors, matched);
+    mut matched: MatchedCut,
+) -> Result<MatchedCut, NotPositiveDefinite> {
+    let cycles = turning_cycles(sectors, &matched.unfolding);
     if cycles.is_empty() {
-        return Ok(0);
+        return Ok(matched);
     }
-    let projector = Projector::new(sectors, metric, matched)?;
-    let flow: Vec<(u32, f64)> = matched
-        .matching
-        .iter()
-        .zip(&matched.isometric)
-        .enumerate()
-        .map(|(s, (&r, r0))| (s as u32, r0 - f64::from(r)))
-        .collect();
+    let projector = Projector::new(sectors, metric, &matched.unfolding)?;
+    let flow: Vec<(u32, f64)> =
+        matched.excess().enumerate().map(|(s, excess)| (s as u32, -excess)).collect();
     let target = projector.residual(&flow);
     let columns: Vec<Vec<f64>> = cycles
         .par_iter()
@@ -59,16 +54,16 @@ pub fn fix_holonomy(
             matched.matching[s as usize] += sign * n;
         }
     }
-    Ok(multiples.iter().filter(|&&n| n != 0).count())
+    Ok(matched)
 }
 
 /// A basis of the cycles of the graph of turning edges, the free sectors merged to one: signed edges.
-fn turning_cycles(sectors: &Sectors<'_>, matched: &MatchedCut) -> Vec<Vec<(u32, i32)>> {
+fn turning_cycles(sectors: &Sectors<'_>, unfolding: &Unfolding) -> Vec<Vec<(u32, i32)>> {
     let slit = sectors.slit();
     let free = slit.n_vertices() as u32;
     let id = |s: Vertex| if sectors.is_free(s) { free } else { s.0 };
     let ends: Vec<[u32; 2]> =
-        matched.turning.iter().map(|&h| [id(slit.origin(h)), id(slit.tip(h))]).collect();
+        unfolding.turning.iter().map(|&h| [id(slit.origin(h)), id(slit.tip(h))]).collect();
     let mut at = vec![Vec::new(); slit.n_vertices() + 1];
     for (s, &[a, b]) in ends.iter().enumerate() {
         at[a as usize].push((b, s as u32, 1));
@@ -132,7 +127,7 @@ impl Projector {
     fn new(
         sectors: &Sectors<'_>,
         metric: &Metric,
-        matched: &MatchedCut,
+        unfolding: &Unfolding,
     ) -> Result<Self, NotPositiveDefinite> {
         let slit = sectors.slit();
         let ground = slit.n_faces() as u32;
@@ -166,7 +161,7 @@ impl Projector {
         cholesky.factorize(&pattern, &matrix)?;
         let mut number = vec![0u32; slit.n_halfedges()];
         edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
-        let of_turning = matched.turning.iter().map(|&h| number[h.at()]).collect();
+        let of_turning = unfolding.turning.iter().map(|&h| number[h.at()]).collect();
         Ok(Self { sides, of_turning, weights, nodes, cholesky })
     }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 const RINGS: usize = 2;
 
 /// Answer of the log scale to turning one edge by a quarter, on its patch, negated.
-struct Response {
+struct PatchResponse {
     /// Vertices of the patch with the area-weighted change of the log scale.
     weighted: Vec<(Vertex, f64)>,
     /// Weighted square of the change.
@@ -25,7 +25,7 @@ struct Response {
 /// The energy `|s|^2` then changes by `-2 d <s, w> + d^2 |w|^2`. In units of `|w|^2` this is `d^2` where
 /// the layout is still isometric, and less where the turn relieves a stretch that is there.
 pub(super) struct LocalEstimate {
-    responses: Vec<Option<Response>>,
+    responses: Vec<Option<PatchResponse>>,
 }
 
 impl LocalEstimate {
@@ -42,7 +42,7 @@ impl LocalEstimate {
             .par_iter()
             .map(|&e| (e, respond(sectors, &cotangent, &area, turning[e as usize])))
             .collect();
-        let mut responses: Vec<Option<Response>> = turning.iter().map(|_| None).collect();
+        let mut responses: Vec<Option<PatchResponse>> = turning.iter().map(|_| None).collect();
         for (e, response) in solved {
             responses[e as usize] = response;
         }
@@ -62,7 +62,7 @@ fn respond(
     cotangent: &HalfedgeData<f64>,
     area: &VertexData<f64>,
     edge: Halfedge,
-) -> Option<Response> {
+) -> Option<PatchResponse> {
     let slit = sectors.slit();
     let mut patch = vec![slit.origin(edge), slit.tip(edge)];
     let mut number: BTreeMap<Vertex, usize> = patch.iter().copied().zip(0..).collect();
@@ -104,5 +104,5 @@ fn respond(
     solve_spd(&laplacian, &mut change).ok()?;
     let weighted: Vec<_> = patch.iter().zip(&change).map(|(&v, w)| (v, w * area[v])).collect();
     let square: f64 = weighted.iter().zip(&change).map(|((_, a), w)| a * w).sum();
-    (square > 0.0).then_some(Response { weighted, square })
+    (square > 0.0).then_some(PatchResponse { weighted, square })
 }

@@ -4,21 +4,11 @@ use super::options::{RoundingOptions, RoundingStrategy};
 use super::patch::LocalEstimate;
 use super::relaxation::Relaxation;
 use super::weights::SectorWeights;
-use crate::cut::{MatchedCut, unfold};
+use super::{Rounding, RoundingStats};
+use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::features::Sectors;
-use crate::layout::homotopy::HomotopyError;
-use crate::progress::Watch;
-use num_complex::Complex64;
+use crate::progress::{SolveError, Watch};
 use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
-
-/// What the rounding loop did.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct RoundingStats {
-    /// Rounds run.
-    pub rounds: usize,
-    /// Layouts computed.
-    pub layouts: usize,
-}
 
 /// Cost threshold of the first and last round.
 const FIRST_THRESHOLD: f64 = 0.05;
@@ -37,19 +27,19 @@ const LARGE_TURN: f64 = 0.1;
 /// its ends less the preferred ones, is `size(d) + bias (|k_o - d| + |k_d + d| - |k_o| - |k_d|)`: turning moves
 /// curvature from one end to the other, and the second term is the change of total absolute curvature. At
 /// corners the bias is the corner weight, and what leads out of the bounds of the index costs more still.
-/// Returns the rotations of the faces in the last layout of the all-seam cut.
-pub fn round(
+/// The frames are those of the last layout.
+pub(super) fn round_progressively(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    matched: &mut MatchedCut,
+    unfolding: Unfolding,
     options: &RoundingOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(Vec<Complex64>, RoundingStats), HomotopyError> {
+) -> Result<Rounding, SolveError> {
     let slit = sectors.slit();
-    let z = unfold(slit, metric, &matched.tree, &matched.cut);
-    let mut relaxation = Relaxation::new(sectors, metric, matched, z)?;
+    let mut relaxation = Relaxation::new(sectors, metric, &unfolding)?;
     let weights = SectorWeights::new(sectors, options);
-    let mut rotation = matched.isometric.clone();
+    let mut rotation = unfolding.isometric.clone();
+    let mut matching = vec![0; rotation.len()];
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;
     let mut stats = RoundingStats::default();
@@ -63,23 +53,23 @@ pub fn round(
         } else {
             f64::INFINITY
         };
-        let index = matched.indices(sectors, metric, &rotation);
+        let index = unfolding.indices(sectors, metric, &rotation);
         let cost = |edge: u32, turn: f64| {
             let size = match &estimate {
                 Some((patches, log_scale)) => patches.size(edge, turn, log_scale),
                 None => turn.abs(),
             };
-            let h = matched.turning[edge as usize];
+            let h = unfolding.turning[edge as usize];
             let (o, d) = (slit.origin(h), slit.tip(h));
             size + (weights.change(o, index[o], -turn) + weights.change(d, index[d], turn))
         };
-        let chosen = choose(slit, &matched.turning, &rotation, &open, threshold, cost);
+        let chosen = choose(slit, &unfolding.turning, &rotation, &open, threshold, cost);
         stats.rounds += 1;
         if chosen.is_empty() {
             continue;
         }
         for &(edge, integer) in &chosen {
-            matched.matching[edge as usize] = integer;
+            matching[edge as usize] = integer;
             rotation[edge as usize] = f64::from(integer);
             relaxation.close(edge as usize, integer);
         }
@@ -97,7 +87,7 @@ pub fn round(
             // Most edges are rounded at first sight; the patches of the others are worth solving.
             let patches = match estimate {
                 Some((patches, _)) => patches,
-                None => LocalEstimate::new(sectors, metric, &matched.turning, &open),
+                None => LocalEstimate::new(sectors, metric, &unfolding.turning, &open),
             };
             estimate = Some((patches, relaxation.log_scale(slit, metric)));
         }
@@ -106,7 +96,8 @@ pub fn round(
             *r = relaxation.rotation(edge as usize, *r);
         }
     }
-    Ok((relaxation.frames(), stats))
+    let matched = MatchedCut { unfolding, matching };
+    Ok(Rounding { start: FramedCut { matched, frames: relaxation.frames() }, stats })
 }
 
 /// The open edges to round now, with their integers: cost within the threshold, cheapest first, large

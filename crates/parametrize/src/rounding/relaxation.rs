@@ -1,7 +1,7 @@
 //! The layout between roundings: as rigid as possible, rounded edges held, the others free.
 
-use super::system::System;
-use crate::cut::{Cut, MatchedCut};
+use super::system::RelaxationSystem;
+use crate::cut::{Cut, Unfolding};
 use crate::features::Sectors;
 use crate::quarter::{direction, unit};
 use num_complex::Complex64;
@@ -33,7 +33,7 @@ pub(super) struct Relaxation {
     aligned: Vec<AlignedEdge>,
     /// Those of them that turn; they follow on the seams.
     turning: Vec<u32>,
-    system: System,
+    system: RelaxationSystem,
 }
 
 /// One side of an aligned edge.
@@ -47,17 +47,16 @@ struct AlignedEdge {
 }
 
 impl Relaxation {
-    /// Starts from a layout of the cut; the aligned edges that hang on the ground are held at once.
+    /// Starts from the isometric layout; the aligned edges that hang on the ground are held at once.
     ///
     /// # Errors
     /// When the system cannot be set up.
     pub(super) fn new(
         sectors: &Sectors<'_>,
         metric: &Metric,
-        matched: &MatchedCut,
-        z: Vec<Complex64>,
+        unfolding: &Unfolding,
     ) -> Result<Self, NotPositiveDefinite> {
-        let (slit, cut) = (sectors.slit(), &matched.cut);
+        let (slit, cut) = (sectors.slit(), &unfolding.cut);
         let n = cut.n_wedges;
         let seams: Vec<[u32; 4]> = cut.seams.iter().map(|&h| cut.seam_wedges(slit, h)).collect();
         let faces: Vec<[u32; 3]> =
@@ -67,13 +66,13 @@ impl Relaxation {
         let quads = seams.iter().chain(&links).map(<[u32; 4]>::as_slice);
         let cliques = faces.iter().map(<[u32; 3]>::as_slice).chain(quads);
         let mut relaxation = Self {
-            z,
+            z: unfolding.positions(sectors, metric),
             corner_weights: corner_weights(slit, metric),
             wedge_of_corner: cut.wedge.to_vec(),
             corners_of_wedge: Buckets::new(n, &cut.wedge),
             frames: vec![Complex64::ONE; faces.len()],
-            system: System::new(n, cliques, sectors.any_aligned())?,
-            turning: matched.turning[seams.len()..].iter().map(|&h| place[h]).collect(),
+            system: RelaxationSystem::new(n, cliques, sectors.any_aligned())?,
+            turning: unfolding.turning[seams.len()..].iter().map(|&h| place[h]).collect(),
             seams,
             aligned,
         };
@@ -84,7 +83,7 @@ impl Relaxation {
             relaxation.system.add_row(&row, cotangent[h] / 2.0);
         }
         relaxation.system.shift();
-        for h in matched.tree.ground.iter().flatten() {
+        for h in unfolding.tree.ground.iter().flatten() {
             relaxation.align(place[*h], 0);
         }
         Ok(relaxation)

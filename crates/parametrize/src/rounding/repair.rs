@@ -5,16 +5,23 @@ use crate::features::Sectors;
 use seamstress_mesh::{Metric, Vertex, VertexData};
 use std::collections::VecDeque;
 
-/// Shifts matchings until every index is within its bounds; returns how many shifts it took, and the
-/// sectors that stay out of bounds.
+/// Matchings whose indices are within their bounds as far as possible.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Repair {
+    /// The matchings.
+    pub matched: MatchedCut,
+    /// Shifts of matchings by one quarter turn that it took.
+    pub shifts: usize,
+    /// Sectors that stay out of bounds.
+    pub hopeless: Vec<Vertex>,
+}
+
+/// Shifts matchings until every index is within its bounds.
 ///
 /// A sector out of bounds passes one unit along the shortest path of turning edges to a sector that can
 /// take it; free ones always can.
-pub fn repair(
-    sectors: &Sectors<'_>,
-    metric: &Metric,
-    matched: &mut MatchedCut,
-) -> (usize, Vec<Vertex>) {
+pub fn repair(sectors: &Sectors<'_>, metric: &Metric, mut matched: MatchedCut) -> Repair {
     let slit = sectors.slit();
     let mut index = matched.sector_indices(sectors, metric);
     let bounds: VertexData<(i32, i32)> = slit.vertices().map(|s| sectors.bounds(s)).collect();
@@ -23,7 +30,7 @@ pub fn repair(
         if sectors.is_free(s) { 0 } else { (index[s] - high).max(0) - (low - index[s]).max(0) }
     };
     let mut turning_at = VertexData::filled(slit.n_vertices(), Vec::new());
-    for (e, &h) in matched.turning.iter().enumerate() {
+    for (e, &h) in matched.unfolding.turning.iter().enumerate() {
         // Raising the matching moves a unit of index from the origin to the tip.
         turning_at[slit.origin(h)].push((e, slit.tip(h), 1));
         turning_at[slit.tip(h)].push((e, slit.origin(h), -1));
@@ -51,7 +58,7 @@ pub fn repair(
             }
         }
     }
-    (shifts, hopeless)
+    Repair { matched, shifts, hopeless }
 }
 
 type Step = (usize, Vertex, Vertex, i32);

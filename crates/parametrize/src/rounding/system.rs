@@ -11,7 +11,7 @@ const SHIFT: f64 = 1e-8;
 ///
 /// Rows with one complex coefficient per point make a Hermitian matrix of as many unknowns; rows of single
 /// coordinates need the real matrix of twice the order, whose factorisation takes twice the time.
-pub(super) enum System {
+pub(super) enum RelaxationSystem {
     /// One complex unknown per point.
     Complex(Form<Complex64>),
     /// Two real unknowns per point.
@@ -23,7 +23,7 @@ pub(super) enum System {
     },
 }
 
-impl System {
+impl RelaxationSystem {
     /// The form zero, with room for rows among the points of each clique; `real` if single coordinates
     /// will appear.
     ///

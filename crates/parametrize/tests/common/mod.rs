@@ -90,6 +90,5 @@ pub(crate) fn unwatched<R>(stage: impl FnOnce(&mut Watch<'_, '_>) -> R) -> R {
 
 /// Index of every vertex at the integer matchings, as real numbers.
 pub(crate) fn real_indices(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) -> Vec<f64> {
-    let r: Vec<f64> = matched.matching.iter().map(|&r| f64::from(r)).collect();
-    matched.indices(&Sectors::unaligned(mesh), metric, &r).0
+    matched.unfolding.indices(&Sectors::unaligned(mesh), metric, &matched.rotations()).0
 }

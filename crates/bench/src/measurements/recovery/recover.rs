@@ -8,12 +8,12 @@ use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut, lifted_angles,
     matched_by_angles,
 };
-use seamstress_parametrize::cut::{DualTree, curvature_weight};
+use seamstress_parametrize::cut::{
+    DualTree, FramedCut, MatchedCut, curvature_weight, frames_of_angles,
+};
 use seamstress_parametrize::features::Sectors;
-use seamstress_parametrize::layout::isometric::frames_of_angles;
-use seamstress_parametrize::layout::safeguards::lay_out;
+use seamstress_parametrize::layout::ladder::{LayoutEffort, lay_out};
 use seamstress_parametrize::progress::Watch;
-use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_parametrize::{
     FieldMapOptions, MapError, MapOptions, SeamlessMap, Tolerance, make_field_map, make_map,
 };
@@ -167,8 +167,11 @@ impl Piece {
         outcome.cones[0] += self.cones(&matched);
         let angles = match damage {
             Damage::Naive => {
-                matched =
-                    MatchedCut::new(&Sectors::unaligned(&self.mesh), &self.metric, matched.tree);
+                matched = MatchedCut::new(
+                    &Sectors::unaligned(&self.mesh),
+                    &self.metric,
+                    matched.unfolding.tree,
+                );
                 self.metric.angle.clone()
             }
             Damage::Matchings => {
@@ -179,13 +182,15 @@ impl Piece {
             Damage::Foldovers => {
                 let (angles, flips) = folded_angles(&self.mesh, &self.corner_uvs, rng);
                 outcome.flips += flips;
-                matched = matched_by_angles(&self.mesh, &self.metric, matched.tree, &angles);
+                matched =
+                    matched_by_angles(&self.mesh, &self.metric, matched.unfolding.tree, &angles);
                 angles
             }
             Damage::Field => {
                 outcome.flips += count_flips(&self.mesh, &self.field_uvs);
                 let angles = lifted_angles(&self.mesh, &self.field_uvs);
-                matched = matched_by_angles(&self.mesh, &self.metric, matched.tree, &angles);
+                matched =
+                    matched_by_angles(&self.mesh, &self.metric, matched.unfolding.tree, &angles);
                 angles
             }
         };
@@ -218,6 +223,7 @@ impl Piece {
             self.mesh.faces().map(|f| self.mesh.face_vertices(f).map(|v| v.0)).collect();
         let pairs = before.matching.iter().zip(&after.matchings);
         let seams: Vec<CheckedSeam> = before
+            .unfolding
             .cut
             .seams
             .iter()
@@ -237,23 +243,21 @@ impl Piece {
     fn lay_out(&self, matched: MatchedCut, consistent: &Consistent, outcome: &mut Outcome) {
         let mut go_on = |_| ControlFlow::Continue(());
         let mut watch = Watch::new(&mut go_on, 0, 1);
-        let tree = &matched.tree;
+        let tree = &matched.unfolding.tree;
         let frames = frames_of_angles(&self.mesh, &self.metric, &consistent.angles, tree);
-        match lay_out(
-            &Sectors::unaligned(&self.mesh),
-            &self.metric,
-            matched,
-            Some(&frames),
-            &mut watch,
-        ) {
-            Ok(laid) => {
-                let z = laid.layout.expand(&laid.y);
-                let uv = |h| z[laid.layout.cut.wedge[h] as usize];
+        let sectors = Sectors::unaligned(&self.mesh);
+        let start = FramedCut { matched, frames };
+        let effort = LayoutEffort::Thorough;
+        match lay_out(&sectors, &self.metric, &start, effort, &mut watch) {
+            Ok(Ok(layout)) => {
+                let z = layout.space.expand(&layout.y);
+                let uv = |h| z[layout.space.cut.wedge[h] as usize];
                 let uvs = self.mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect();
                 if let Err(error) = SeamlessMap::certify(&self.mesh, uvs, &Tolerance::default()) {
                     outcome.fail(0, error.to_string());
                 }
             }
+            Ok(Err(defects)) => outcome.fail(0, defects.to_string()),
             Err(error) => outcome.fail(0, error.to_string()),
         }
     }

@@ -1,11 +1,14 @@
 //! The classical way, as a baseline: a smooth cross field, then the Poisson layout that follows it.
 
-use super::component::{Clock, corner_uvs};
-use super::start::smooth;
-use super::{ComponentStats, MapError, by_component};
+use super::components::by_component;
+use super::domain::corner_uvs;
+use super::log::StageLog;
+use super::{ComponentStats, MapError, MethodError};
+use crate::cut::Unfolding;
 use crate::features::Sectors;
+use crate::field::smooth_field;
 use crate::layout::exact::ExactLayout;
-use crate::layout::safeguards::{LayoutError, Route};
+use crate::layout::route::Route;
 use crate::map::{Cone, SeamlessMap, Tolerance, Violations};
 use crate::progress::{Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
@@ -79,22 +82,24 @@ fn lay_out_field(
     positions: &[[f64; 3]],
     options: &FieldMapOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<Baseline, LayoutError> {
+) -> Result<Baseline, MethodError> {
     let mesh = &piece.mesh;
     let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
     let metric = Metric::from_positions(mesh, &positions);
-    let mut clock = Clock::new();
+    let mut log = StageLog::default();
 
-    watch.enter(Stage::Rounding)?;
+    log.enter(Stage::Rounding, watch)?;
     let sectors = Sectors::unaligned(mesh);
-    let begun = smooth(&sectors, &metric, watch)?;
-    clock.lap(Stage::Rounding, begun.layouts);
+    let unfolding = Unfolding::through_curved_sectors(&sectors, &metric);
+    let (start, field) = smooth_field(mesh, &metric, unfolding, watch)?;
+    log.count(field.solves);
 
-    watch.enter(Stage::Layout)?;
-    let mut layout = ExactLayout::new(&sectors, &metric, &begun.matched)?;
+    log.enter(Stage::Layout, watch)?;
+    let mut layout = ExactLayout::new(&sectors, &metric, &start.matched)?;
     // The first global step is the Poisson layout.
-    let y = layout.arap(&begun.frames, 1 + options.iterations)?;
-    clock.lap(Stage::Layout, 1 + options.iterations);
+    let mut y = layout.arap(&start.frames, 1 + options.iterations)?;
+    layout.rescale(&mut y);
+    log.count(1 + options.iterations);
 
     let cones = layout.index.enumerate().filter(|(_, k)| **k != 0);
     let cones = cones.map(|(v, &index)| Cone { vertex: piece.vertices[v].0, index }).collect();
@@ -104,12 +109,10 @@ fn lay_out_field(
         boundary_loops: mesh.n_boundary_loops(),
         route: Route::Poisson,
         metric_exponent: 1.0,
-        rounding_rounds: begun.rounds,
+        rounding_rounds: field.rounds,
         repaired_seams: 0,
         mixed_integer: None,
-        stages: clock.laps,
+        stages: log.finish(),
     };
-    let mut y = y;
-    layout.rescale(&mut y);
     Ok((corner_uvs(mesh, &metric, &layout, &y), stats, cones))
 }

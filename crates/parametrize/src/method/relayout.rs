@@ -1,18 +1,18 @@
 //! Laying a given map out anew, for another objective.
 
-use super::component::corner_uvs;
-use super::parts::{Outcome, Whole, followed, in_component};
-use super::{MapError, by_component};
+use super::components::by_component;
+use super::domain::corner_uvs;
+use super::whole::{AlignedMap, FeatureTally, followed};
+use super::{MapError, MethodError};
 use crate::features::{ReleasedFeature, Sectors};
 use crate::layout::anisotropy::Anisotropy;
-use crate::layout::disk::{embed_disk, is_disk};
+use crate::layout::disk::embed_disk;
 use crate::layout::energy::SymmetricDirichlet;
 use crate::layout::exact::ExactLayout;
 use crate::layout::newton::NewtonOptions;
 use crate::layout::objective::{
     ConicStats, Ending, Objective, ObjectiveOptions, Optimized, optimize,
 };
-use crate::layout::safeguards::LayoutError;
 use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
 use crate::progress::{Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
@@ -104,7 +104,7 @@ pub fn relayout(
         watch.enter(Stage::Cut)?;
         let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
         SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
-            .map_err(LayoutError::Uncertified)
+            .map_err(MethodError::Uncertified)
     })
 }
 
@@ -121,12 +121,9 @@ pub fn lay_out_disk(
 ) -> Result<Relayout, MapError> {
     run(mesh, positions, options, observer, |piece, metric, watch| {
         watch.enter(Stage::Cut)?;
-        if !is_disk(&piece.mesh) {
-            return Err(LayoutError::NotADisk);
-        }
         let uvs = embed_disk(&piece.mesh, metric)?;
         let embedded = SeamlessMap::certify(&piece.mesh, uvs, &options.tolerance)
-            .map_err(LayoutError::Uncertified)?;
+            .map_err(MethodError::Uncertified)?;
         let (mut layout, y) = ExactLayout::from_map(&piece.mesh, metric, &embedded)?;
         if !layout.defects(&Sectors::unaligned(&piece.mesh), &y).none() {
             return Ok(embedded);
@@ -148,21 +145,21 @@ fn run(
     positions: &[[f64; 3]],
     options: &RelayoutOptions,
     observer: &mut Observer<'_>,
-    start: impl Fn(&Component, &Metric, &mut Watch<'_, '_>) -> Result<SeamlessMap, LayoutError>,
+    start: impl Fn(&Component, &Metric, &mut Watch<'_, '_>) -> Result<SeamlessMap, MethodError>,
 ) -> Result<Relayout, MapError> {
     let none = EdgeSet::new(mesh, []);
     let asked = options.features.as_ref().unwrap_or(&none);
-    let mut outcome = Outcome::default();
+    let mut outcome = FeatureTally::default();
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
         let here: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
-        let (kept, released) = followed(&piece.mesh, &map, in_component(asked, piece))
-            .map_err(LayoutError::Uncertified)?;
+        let (kept, released) =
+            followed(&piece.mesh, &map, asked.restrict(piece)).map_err(MethodError::Uncertified)?;
         outcome.add(piece, &kept, &released);
         improve(piece, &metric, &map, &kept, options, watch)
     })?;
-    let Whole { map, features, alignment, released } =
+    let AlignedMap { map, features, alignment, released } =
         outcome.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
     let metric = Metric::from_positions(mesh, positions);
     let distortion = distortion(mesh, &metric, map.corner_uvs());
@@ -177,7 +174,7 @@ fn improve(
     features: &EdgeSet,
     options: &RelayoutOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(Vec<[f64; 2]>, RelayoutStats), LayoutError> {
+) -> Result<(Vec<[f64; 2]>, RelayoutStats), MethodError> {
     let mesh = &piece.mesh;
     let sectors = Sectors::new(mesh, metric, features);
     let (mut layout, y) = ExactLayout::from_aligned_map(&sectors, metric, map)?;
@@ -188,7 +185,7 @@ fn improve(
     let defects = layout.defects(&sectors, &y);
     if !defects.none() {
         // The map holds in floating point, but not the layout that closes its seams exactly.
-        return Err(LayoutError::Defective(defects));
+        return Err(MethodError::Defective(defects));
     }
     let Optimized { y, value, before, iterations, ending, conic } =
         optimize(&sectors, &mut layout, y, options.objective, &options.settings, watch)?;

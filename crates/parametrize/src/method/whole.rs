@@ -7,31 +7,22 @@ use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Halfedge, TriMesh, Vertex};
 use std::collections::BTreeSet;
 
-/// The edges of a set in a component, in its own ids.
-pub fn in_component(edges: &EdgeSet, piece: &Component) -> EdgeSet {
-    let local = |h: &Halfedge| {
-        let whole = piece.faces[h.face().at()].halfedge(h.side());
-        edges.contains(whole)
-    };
-    EdgeSet::new(&piece.mesh, piece.mesh.halfedges().filter(local))
-}
-
 /// What became of the features of all components, in the ids of the whole mesh.
 #[derive(Debug, Default)]
-pub(super) struct Outcome {
+pub(super) struct FeatureTally {
     kept: Vec<Halfedge>,
     released: Vec<ReleasedFeature>,
 }
 
 /// A certified map of all components, with what became of the features.
-pub(super) struct Whole {
+pub(super) struct AlignedMap {
     pub(super) map: SeamlessMap,
     pub(super) features: EdgeSet,
     pub(super) alignment: Alignment,
     pub(super) released: Vec<ReleasedFeature>,
 }
 
-impl Outcome {
+impl FeatureTally {
     /// Adds those of a component, given in its own ids.
     pub(super) fn add(&mut self, piece: &Component, kept: &EdgeSet, released: &[ReleasedFeature]) {
         let whole = |h: &Halfedge| piece.faces[h.face().at()].halfedge(h.side());
@@ -52,7 +43,7 @@ impl Outcome {
         corner_uvs: Vec<[f64; 2]>,
         is_strict: bool,
         tolerance: &Tolerance,
-    ) -> Result<Whole, MapError> {
+    ) -> Result<AlignedMap, MapError> {
         let Self { kept, released } = self;
         if is_strict && !released.is_empty() {
             return Err(MapError::Released { released });
@@ -61,7 +52,7 @@ impl Outcome {
         let features = EdgeSet::new(mesh, kept);
         let pairs = features.vertex_pairs(mesh);
         let alignment = Alignment::certify(mesh, &map, &pairs, &AlignmentTolerance::default())?;
-        Ok(Whole { map, features, alignment, released })
+        Ok(AlignedMap { map, features, alignment, released })
     }
 }
 

@@ -1,0 +1,105 @@
+//! The direct method on one page (Levi 2021): unfold, round, lay out, relax, clean up, polish, certify.
+//!
+//! [`parametrize`] runs it on a connected mesh. Every stage takes values and returns new ones. The mesh comes with
+//! the edges that are to run along the axes ([`Domain`]); a stage that fails near some of them returns a domain
+//! with fewer. Around the page: what a map starts from (`start`), what is tried when a component fails
+//! (`component`), all components side by side (`maps`), and what is done to maps that are there (`relayout`).
+
+mod baseline;
+mod certify;
+mod component;
+mod components;
+mod consistent;
+mod domain;
+mod error;
+mod fewer_cones;
+mod finish;
+mod lay_out;
+mod log;
+mod maps;
+mod options;
+mod relaxed;
+mod relayout;
+mod round;
+mod solution;
+mod start;
+mod whole;
+
+pub use baseline::{FieldMap, FieldMapOptions, UncertifiedMap, make_field_map};
+pub use error::{MapError, MethodError};
+pub use maps::{make_aligned_map, make_map, make_map_from};
+pub use options::{MapOptions, Purpose};
+pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relayout};
+pub use solution::{ComponentStats, MapSolution, StageStats};
+pub use start::Start;
+pub use whole::followed;
+
+use crate::progress::{Stage, Watch};
+use certify::{ComponentMap, last_certified};
+use domain::Domain;
+use fewer_cones::{CleanUpTerms, with_fewer_cones};
+use finish::{in_surface_metric, minimize};
+use lay_out::lay_out;
+use log::StageLog;
+use relaxed::{polish, relax};
+use round::round;
+
+/// The seamless map of a connected mesh.
+///
+/// # Errors
+/// [`MethodError`]; never an uncertified map.
+fn parametrize(
+    domain: Domain<'_>,
+    start: &Start,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<ComponentMap, MethodError> {
+    let mut log = StageLog::default();
+
+    // Unfold the faces along a tree, without distortion: every edge off the tree is a seam that turns by some angle.
+    log.enter(Stage::Cut, watch)?;
+    let unfolding = domain.unfold();
+
+    // Round the turns of the seams to whole quarters.
+    log.enter(Stage::Rounding, watch)?;
+    let (domain, rounding) = round(domain, unfolding, start, options, watch)?;
+    log.count(rounding.stats.layouts);
+
+    // Lay out with seams that close exactly, no flipped triangle and no wrong angle.
+    log.enter(Stage::Layout, watch)?;
+    let (domain, rounding, layout) = lay_out(domain, rounding, start, options, watch)?;
+
+    // Relax to the smallest mean distortion.
+    let relaxed = relax(&domain, layout, watch)?;
+    log.count(relaxed.iterations);
+
+    // Clean up: fewer cones, if the layout with them is worth it.
+    let cleaned = match CleanUpTerms::new(&domain, start, options) {
+        Some(terms) => {
+            log.enter(Stage::CleanUp, watch)?;
+            let (cleaned, iterations) = with_fewer_cones(&domain, relaxed, &terms, watch)?;
+            log.count(iterations);
+            cleaned
+        }
+        None => relaxed,
+    };
+
+    // Polish: lower the worst distortion for a bounded rise of the mean.
+    log.enter(Stage::Polish, watch)?;
+    let (layout, iterations) = polish(&domain, cleaned, options.polish.as_ref(), watch)?;
+    log.count(iterations);
+    let route = layout.route;
+    let mut candidates = vec![domain.corner_uvs(&layout)];
+    let layout = in_surface_metric(&domain, layout, watch)?;
+    candidates.push(domain.corner_uvs(&layout));
+    if let Some(objective) = options.objective {
+        log.enter(Stage::Objective, watch)?;
+        let (layout, iterations) = minimize(&domain, layout, objective, watch)?;
+        log.count(iterations);
+        candidates.push(domain.corner_uvs(&layout));
+    }
+
+    // Certify: the thinnest triangles may flip when a layout is scaled and moved, so the last that passes is taken.
+    let corner_uvs = last_certified(&domain, candidates, &options.tolerance)?;
+    Ok(ComponentMap::new(domain, corner_uvs, rounding.stats, route, log))
+}

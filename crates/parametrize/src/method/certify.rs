@@ -1,0 +1,71 @@
+//! The certified map of a component.
+
+use super::domain::Domain;
+use super::log::StageLog;
+use super::{ComponentStats, MethodError};
+use crate::features::ReleasedFeature;
+use crate::layout::route::Route;
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use crate::rounding::RoundingStats;
+use seamstress_mesh::features::EdgeSet;
+
+/// The map of a component, in its own ids.
+pub(super) struct ComponentMap {
+    /// UVs per corner, mesh units.
+    pub(super) corner_uvs: Vec<[f64; 2]>,
+    /// The edges that are aligned.
+    pub(super) features: EdgeSet,
+    /// Those that were to be, but are not.
+    pub(super) released: Vec<ReleasedFeature>,
+    pub(super) stats: ComponentStats,
+}
+
+impl ComponentMap {
+    /// With how it was made.
+    pub(super) fn new(
+        domain: Domain<'_>,
+        corner_uvs: Vec<[f64; 2]>,
+        rounding: RoundingStats,
+        route: Route,
+        log: StageLog,
+    ) -> Self {
+        let mesh = domain.mesh();
+        let stats = ComponentStats {
+            faces: mesh.n_faces(),
+            genus: mesh.genus(),
+            boundary_loops: mesh.n_boundary_loops(),
+            route,
+            metric_exponent: domain.exponent,
+            rounding_rounds: rounding.rounds,
+            repaired_seams: rounding.shifted_seams,
+            mixed_integer: rounding.mixed_integer,
+            stages: log.finish(),
+        };
+        Self { corner_uvs, features: domain.features(), released: domain.released, stats }
+    }
+}
+
+/// The last of some UVs that are a seamless map of a domain, aligned edges along the axes.
+///
+/// # Errors
+/// What is wrong with the first, if all fail.
+pub(super) fn last_certified(
+    domain: &Domain<'_>,
+    candidates: Vec<Vec<[f64; 2]>>,
+    tolerance: &Tolerance,
+) -> Result<Vec<[f64; 2]>, MethodError> {
+    let mesh = domain.mesh();
+    let aligned = domain.features().vertex_pairs(mesh);
+    let certify = |uvs: &Vec<[f64; 2]>| {
+        let map = SeamlessMap::certify(mesh, uvs.clone(), tolerance)?;
+        Alignment::certify(mesh, &map, &aligned, &AlignmentTolerance::default())
+    };
+    let mut failure = Violations(Vec::new());
+    for uvs in candidates.into_iter().rev() {
+        match certify(&uvs) {
+            Ok(_) => return Ok(uvs),
+            Err(violations) => failure = violations,
+        }
+    }
+    Err(MethodError::Uncertified(failure))
+}

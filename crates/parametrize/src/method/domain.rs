@@ -1,0 +1,116 @@
+//! What a connected mesh is mapped in: its metric, and the edges that are to run along the axes.
+
+use crate::cut::Unfolding;
+use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
+use crate::layout::exact::{Defects, ExactLayout};
+use crate::layout::ladder::SeamlessLayout;
+use num_complex::Complex64;
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
+
+/// Times that features near defects are dropped, each time with a wider ring, before all of them are.
+const RELEASE_ROUNDS: usize = 8;
+
+/// A connected mesh in a metric, and the edges on it that are to run along the axes.
+#[derive(Debug, Clone)]
+pub(super) struct Domain<'m> {
+    /// The mesh slit along its aligned edges.
+    pub(super) sectors: Sectors<'m>,
+    /// The metric of the surface.
+    pub(super) surface: &'m Metric,
+    /// The metric to work in: that of the surface, its lengths to the power of `exponent`.
+    pub(super) metric: Metric,
+    /// 1 unless the mesh is degenerate.
+    pub(super) exponent: f64,
+    /// Features that are not aligned.
+    pub(super) released: Vec<ReleasedFeature>,
+    /// Largest index of a cone, quarters.
+    largest_index: i32,
+    /// How often features near defects were dropped.
+    rounds: usize,
+}
+
+impl<'m> Domain<'m> {
+    /// In the metric of the surface, along features as far as these do not contradict each other.
+    pub(super) fn new(
+        mesh: &'m TriMesh,
+        positions: &[[f64; 3]],
+        surface: &'m Metric,
+        features: EdgeSet,
+        largest_index: i32,
+    ) -> Self {
+        let (features, released) = drop_conflicts(mesh, positions, surface, features);
+        let sectors = Sectors::new(mesh, surface, &features).with_largest_index(largest_index);
+        let metric = surface.clone();
+        Self { sectors, surface, metric, exponent: 1.0, released, largest_index, rounds: 0 }
+    }
+
+    /// The mesh.
+    pub(super) fn mesh(&self) -> &'m TriMesh {
+        self.sectors.mesh()
+    }
+
+    /// Whether any edge is aligned.
+    pub(super) fn any_aligned(&self) -> bool {
+        self.sectors.any_aligned()
+    }
+
+    /// The aligned edges.
+    pub(super) fn features(&self) -> EdgeSet {
+        EdgeSet::new(self.mesh(), self.sectors.aligned())
+    }
+
+    /// The mesh cut and unfolded.
+    pub(super) fn unfold(&self) -> Unfolding {
+        Unfolding::through_curved_sectors(&self.sectors, &self.metric)
+    }
+
+    /// UVs per corner of a layout, mesh units.
+    pub(super) fn corner_uvs(&self, layout: &SeamlessLayout) -> Vec<[f64; 2]> {
+        corner_uvs(self.mesh(), self.surface, &layout.space, &layout.y)
+    }
+
+    /// The same in another metric: the lengths of the surface to a power of at most 1.
+    pub(super) fn with_exponent(&self, exponent: f64) -> Self {
+        let metric = self.surface.snowflake(self.mesh(), exponent);
+        Self { metric, exponent, ..self.clone() }
+    }
+
+    /// The same with nothing aligned.
+    pub(super) fn without_features(&self) -> Self {
+        let everywhere = VertexData::filled(self.mesh().n_vertices(), true);
+        self.without_features_near(everywhere, 0)
+    }
+
+    /// The same with the features dropped near defects; none if nothing is left to align then, or if that was
+    /// tried often enough.
+    pub(super) fn without_features_at(&self, defects: &Defects) -> Option<Self> {
+        let near = defects.vertices(self.mesh());
+        let may_drop = self.any_aligned() && self.rounds < RELEASE_ROUNDS;
+        let fewer = may_drop.then(|| self.without_features_near(near, self.rounds))?;
+        fewer.any_aligned().then_some(fewer)
+    }
+
+    fn without_features_near(&self, near: VertexData<bool>, rings: usize) -> Self {
+        let (kept, more) = release_near(self.mesh(), near, rings, &self.features());
+        let sectors = Sectors::new(self.mesh(), self.surface, &kept);
+        let sectors = sectors.with_largest_index(self.largest_index);
+        let released = [&self.released[..], &more].concat();
+        Self { sectors, released, rounds: self.rounds + 1, ..self.clone() }
+    }
+}
+
+/// UVs per corner in mesh units, the lower left corner of their box at zero.
+pub(super) fn corner_uvs(
+    mesh: &TriMesh,
+    metric: &Metric,
+    layout: &ExactLayout,
+    y: &[f64],
+) -> Vec<[f64; 2]> {
+    let z = layout.expand(y);
+    let low =
+        |coordinate: fn(&Complex64) -> f64| z.iter().map(coordinate).fold(f64::INFINITY, f64::min);
+    let corner = Complex64::new(low(|z| z.re), low(|z| z.im));
+    let uv = |h: Halfedge| (z[layout.cut.wedge[h] as usize] - corner) * metric.unit;
+    mesh.halfedges().map(|h| [uv(h).re, uv(h).im]).collect()
+}

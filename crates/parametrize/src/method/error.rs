@@ -1,0 +1,149 @@
+//! Why there is no map.
+
+use crate::consistency::ConsistencyError;
+use crate::features::ReleasedFeature;
+use crate::field::{FieldError, PrescriptionError};
+use crate::layout::disk::DiskError;
+use crate::layout::exact::Defects;
+use crate::layout::objective::OptimizeError;
+use crate::map::Violations;
+use crate::progress::{Cancelled, MaybeCancelled, SolveError};
+use seamstress_linalg::NotPositiveDefinite;
+use seamstress_mesh::{Component, Vertex};
+
+/// Why a connected mesh has no map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MethodError {
+    /// The caller asked to stop, or a linear system could not be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// Every route left defects; those of the last one.
+    #[error("no route gave a layout without defects; the last one left {0}")]
+    Defective(Defects),
+    /// The layout stood, but its UVs did not pass the certificate.
+    #[error("the component's map failed its certificate: {0}")]
+    Uncertified(#[source] Violations),
+    /// The cones prescribed cannot be had beside free ones.
+    #[error(transparent)]
+    Cones(#[from] PrescriptionError),
+    /// No consistent matchings were found for the map to start from.
+    #[error(transparent)]
+    Inconsistent(#[from] ConsistencyError),
+    /// A disk could not be laid out, or the mesh is none.
+    #[error(transparent)]
+    Disk(#[from] DiskError),
+    /// The objective could not be minimised.
+    #[error(transparent)]
+    Objective(#[from] OptimizeError),
+}
+
+impl From<Cancelled> for MethodError {
+    fn from(cancelled: Cancelled) -> Self {
+        SolveError::from(cancelled).into()
+    }
+}
+
+impl From<NotPositiveDefinite> for MethodError {
+    fn from(numeric: NotPositiveDefinite) -> Self {
+        SolveError::from(numeric).into()
+    }
+}
+
+impl MaybeCancelled for MethodError {
+    fn cancelled(&self) -> Option<Cancelled> {
+        match self {
+            Self::Solve(error) => error.cancelled(),
+            Self::Inconsistent(ConsistencyError::Cancelled(cancelled))
+            | Self::Objective(OptimizeError::Cancelled(cancelled)) => Some(*cancelled),
+            _ => None,
+        }
+    }
+}
+
+impl MethodError {
+    /// With the elements it names in the ids of the whole mesh.
+    pub(super) fn in_whole(self, piece: &Component) -> Self {
+        let whole = |v: u32| piece.vertices[Vertex(v)].0;
+        match self {
+            Self::Defective(Defects { flips, wrong_angles }) => Self::Defective(Defects {
+                flips: flips.iter().map(|f| piece.faces[f.at()]).collect(),
+                wrong_angles: wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
+            }),
+            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(piece)),
+            Self::Cones(PrescriptionError::NoTaker { vertex }) => {
+                Self::Cones(PrescriptionError::NoTaker { vertex: whole(vertex) })
+            }
+            Self::Inconsistent(ConsistencyError::Infeasible { vertices }) => {
+                let vertices = vertices.into_iter().map(whole).collect();
+                Self::Inconsistent(ConsistencyError::Infeasible { vertices })
+            }
+            other => other,
+        }
+    }
+}
+
+/// Why there is no map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The number of positions is not that of the vertices.
+    #[error("{found} positions for {expected} vertices")]
+    PositionCount {
+        /// Vertices of the mesh.
+        expected: usize,
+        /// Positions given.
+        found: usize,
+    },
+    /// A position is not finite.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NonFinitePosition {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// A component could not be mapped.
+    #[error("component {component} (with face {face}): {cause}")]
+    Component {
+        /// The component, in order of first faces.
+        component: usize,
+        /// Its first face.
+        face: u32,
+        /// What failed.
+        #[source]
+        cause: MethodError,
+    },
+    /// The field to start from is none of this mesh.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// The cones asked for, or those of the field to start from, cannot be had.
+    #[error(transparent)]
+    Cones(#[from] PrescriptionError),
+    /// Feature edges could not be aligned, and [`MapOptions::strict_features`] asked for all of them.
+    #[error("{} feature edges could not be aligned{}", released.len(), listed(released))]
+    Released {
+        /// The edges.
+        released: Vec<ReleasedFeature>,
+    },
+    /// The result did not pass the certificate. Nothing is returned then.
+    #[error("the map failed its certificate: {0}")]
+    Uncertified(#[from] Violations),
+}
+
+impl MapError {
+    /// Whether a component that had to be a disk is none.
+    pub fn is_not_a_disk(&self) -> bool {
+        matches!(self, Self::Component { cause: MethodError::Disk(DiskError::NotADisk), .. })
+    }
+}
+
+/// The first few released features of a list.
+fn listed(released: &[ReleasedFeature]) -> String {
+    const SHOWN: usize = 5;
+    let name = |r: &ReleasedFeature| format!("{}-{} ({})", r.vertices[0], r.vertices[1], r.reason);
+    let shown: Vec<String> = released.iter().take(SHOWN).map(name).collect();
+    let more = if released.len() > SHOWN { ", ..." } else { "" };
+    format!(": {}{more}", shown.join(", "))
+}

@@ -1,0 +1,61 @@
+//! The stage that closes the seams.
+
+use super::consistent::consistent_rounding;
+use super::domain::Domain;
+use super::round::{repaired, round};
+use super::{MapOptions, MethodError, Start};
+use crate::layout::exact::Defects;
+use crate::layout::ladder::{self, LayoutEffort, SeamlessLayout};
+use crate::progress::{SolveError, Watch, unless_cancelled};
+use crate::rounding::Rounding;
+
+/// The layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
+/// the others stay.
+///
+/// # Errors
+/// [`MethodError`].
+pub(super) fn lay_out<'m>(
+    domain: Domain<'m>,
+    rounding: Rounding,
+    start: &Start,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Domain<'m>, Rounding, SeamlessLayout), MethodError> {
+    let (mut domain, mut rounding) = (domain, rounding);
+    loop {
+        let defects = match close(&domain, &rounding, watch)? {
+            Ok(layout) => return Ok((domain, rounding, layout)),
+            Err(defects) => defects,
+        };
+        if start.leaves_cones_free() && !domain.any_aligned() {
+            let consistent = unless_cancelled(consistent_rounding(&domain, &rounding, watch))?;
+            if let Ok(consistent) = consistent
+                && let Ok(Ok(layout)) = unless_cancelled(close(&domain, &consistent, watch))?
+            {
+                return Ok((domain, consistent, layout));
+            }
+        }
+        let Some(fewer) = domain.without_features_at(&defects) else {
+            return Err(MethodError::Defective(defects));
+        };
+        let kept =
+            rounding.start.with_fewer_aligned(&domain.sectors, &fewer.sectors, &fewer.metric);
+        let kept = Rounding { start: kept, stats: rounding.stats };
+        (domain, rounding) = match repaired(&fewer, kept) {
+            Ok(kept) => (fewer, kept),
+            Err(_) => {
+                let unfolding = fewer.unfold();
+                round(fewer, unfolding, start, options, watch)?
+            }
+        };
+    }
+}
+
+fn close(
+    domain: &Domain<'_>,
+    rounding: &Rounding,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Result<SeamlessLayout, Defects>, SolveError> {
+    let (sectors, metric) = (&domain.sectors, &domain.metric);
+    ladder::lay_out(sectors, metric, &rounding.start, LayoutEffort::Thorough, watch)
+}
