@@ -1,4 +1,52 @@
-//! Seamless parametrizations of triangle meshes, and what people make from them: integer-grid maps and quad meshes.
+//! Seamless parametrizations of triangle meshes, and what people make from them: integer-grid maps, quad meshes,
+//! cross fields, metrics and pictures.
+//!
+//! Everything starts from a [`Surface`]:
+//!
+//! | you want | call |
+//! |---|---|
+//! | a surface | [`Surface::read`], [`Surface::from_triangles`], [`Surface::from_polygons`]; [`Inspection`] for what need not be one |
+//! | a seamless map | [`Surface::parametrize`] |
+//! | an integer-grid map | [`Surface::integer_map`], [`Surface::integer_map_of`] |
+//! | a quad mesh | [`Surface::quad_mesh`], [`Surface::extract_quads`] |
+//! | to know whether a map is seamless | [`Surface::certify`], [`Surface::certify_with`] |
+//! | its distortion | [`Surface::measure`] |
+//! | another distortion minimised | [`Surface::optimize`], [`Surface::flatten_disk`] |
+//! | its cross field | [`Surface::field`] |
+//! | creases, rims and other features | [`Surface::features`] |
+//! | the quality of a quad mesh | [`PolygonMesh::quality`] |
+//!
+//! ```
+//! use seamstress::{MapOptions, Surface};
+//!
+//! // A tetrahedron.
+//! let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+//! let surface = Surface::from_triangles(&positions, &faces)?;
+//! let map = surface.parametrize(&MapOptions::default())?;
+//! assert_eq!(map.face_uvs().len(), 4);
+//! // The indices of the cones of a sphere add up to 8 quarters.
+//! assert_eq!(map.cones().iter().map(|cone| cone.index).sum::<i32>(), 8);
+//! # Ok::<(), seamstress::Error>(())
+//! ```
+//!
+//! Whatever takes long runs under the [`Context`] that was attached to the surface: progress, cancellation, a time
+//! limit, threads. Options have defaults and go through JSON, reports come as JSON with published schemas. The
+//! one [`Error`] has a stable code, a stage, elements in the ids of the input, and a hint. The same input gives the same
+//! output on any number of threads.
+//!
+//! # Features
+//!
+//! | feature | default | for |
+//! |---|---|---|
+//! | `io` | yes | reading and writing files |
+//! | `render` | yes | pictures, drawn in software |
+//! | `parallel` | yes | threads |
+//! | `metis` | yes | nested dissection by METIS, in C; else the minimum-degree ordering of faer |
+//! | `clarabel` | yes | a second solver of conic programs, where ours fails |
+//! | `lab` | | what exists to study or compare |
+//! | `schema` | | JSON schemas |
+//! | `clap` | | options as command-line arguments |
 
 mod certify;
 mod context;
@@ -12,7 +60,7 @@ mod finding;
 mod given;
 mod inspection;
 mod integer;
-#[cfg(all(feature = "lab", feature = "io"))]
+#[cfg(feature = "lab")]
 pub mod lab;
 mod map;
 mod optimize;
@@ -67,6 +115,7 @@ pub use schema::schemas;
 pub use surface::Surface;
 
 #[cfg(feature = "io")]
+#[doc(hidden)]
 pub use seamstress_io::{AtomicFile, Format};
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 pub use seamstress_parametrize::mixed_integer::MixedIntegerStats;

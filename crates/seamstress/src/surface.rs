@@ -87,7 +87,7 @@ impl Surface {
     }
 
     /// The same surface as one that was read from a file.
-    #[cfg(all(feature = "lab", feature = "io"))]
+    #[cfg(feature = "lab")]
     pub(crate) fn named(mut self, input: Option<&str>) -> Self {
         if let Some(inner) = Arc::get_mut(&mut self.inner) {
             inner.parts.input = input.map(str::to_owned);

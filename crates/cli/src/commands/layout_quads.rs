@@ -76,7 +76,7 @@ impl Command for LayoutQuadsArgs {
     }
 
     fn write(&self, layout: &QuadLayout, _: &Target, file: &mut AtomicFile) -> io::Result<()> {
-        layout.write_layout_to(file)
+        layout.write_to(file)
     }
 
     fn report(&self, layout: &QuadLayout) -> Value {

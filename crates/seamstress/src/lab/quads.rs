@@ -11,7 +11,6 @@ use seamstress_parametrize::map::Certificate;
 use seamstress_quads::QuadMesh;
 use seamstress_quads::layout::{self, lay_out_conformal, lay_out_squares};
 use serde::{Deserialize, Serialize};
-use std::io;
 
 /// How the coordinates of quads are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -69,18 +68,6 @@ pub struct QuadInput {
     pub vertices: usize,
     /// Quads.
     pub quads: usize,
-}
-
-impl QuadLayout {
-    /// Writes the layout as OBJ.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_layout_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
-        let title = "Layout of a quad mesh";
-        let lines = ["Every two triangles are a unit square".into()];
-        crate::map::write_map(writer, self.surface(), title, self.corner_uvs(), &lines)
-    }
 }
 
 impl PolygonMesh {
