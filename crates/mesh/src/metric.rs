@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// Lengths, flat triangles, angles and areas of a mesh, in units of its mean edge length.
 ///
-/// The unit makes every later constant scale-free. (The seed's section 11 asks for a scale that balances
+/// The unit makes every later constant scale-free. (Levi 2021, suppl. sec. 11, asks for a scale that balances
 /// the singular values of the embedding; the factor it prints does not depend on the scale at all, and
 /// what matters is that there is a unit.) [`Metric::unit`] leads back to mesh units.
 #[derive(Debug, Clone)]

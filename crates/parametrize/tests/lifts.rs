@@ -1,4 +1,4 @@
-//! Eq. (13) of the seed by elimination, against the mixed-integer program as written.
+//! Eq. (13) of Levi 2021 by elimination, against the mixed-integer program as written.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of a test")]
 

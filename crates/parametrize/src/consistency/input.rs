@@ -3,7 +3,7 @@
 use super::error::ConsistencyError;
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, VertexData};
 
-/// The values a matching may take: the three sets of the seed's section 9.
+/// The values a matching may take: the three sets of Levi 2021, suppl. sec. 9.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MatchingSet {
     /// Stays as it is.

@@ -1,6 +1,6 @@
 //! Consistent matchings: the nearest matchings, indices and angles that triangles can have.
 //!
-//! Problem (14) of the seed (Levi 2021, supplement, section 9). Matchings carry no cost; they only move
+//! Problem (14) of Levi 2021 (suppl. sec. 9). Matchings carry no cost; they only move
 //! index from vertex to vertex. What is left is a convex quadratic over integer indices (`descent`) and,
 //! for fixed indices, a quadratic program in the angles (`program`).
 

@@ -4,7 +4,7 @@ use super::{Energy, Jet};
 
 /// Symmetric Dirichlet energy `s1^2 + s2^2 + 1/s1^2 + 1/s2^2`, 4 at an isometry.
 ///
-/// The seed's (5) lost the squares of the inverses in print: as printed it is not smallest at 1.
+/// Eq. (5) of Levi 2021 lost the squares of the inverses in print: as printed its minimum is not at 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SymmetricDirichlet;
 

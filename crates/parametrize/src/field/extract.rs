@@ -1,4 +1,4 @@
-//! The cross field of a seamless map, section 6 of the seed.
+//! The cross field of a seamless map (Levi 2021, suppl. sec. 6).
 
 use super::cross_field::{CrossField, FieldError};
 use super::homology::{DualLoop, Homology, NodeIndices};

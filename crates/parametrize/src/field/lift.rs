@@ -1,4 +1,4 @@
-//! Full turns of matchings from indices: eq. (13) of the seed by elimination.
+//! Full turns of matchings from indices: eq. (13) of Levi 2021 by elimination.
 
 use super::cross_field::loop_index;
 use super::homology::{Homology, NodeIndices};

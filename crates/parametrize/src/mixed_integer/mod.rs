@@ -1,4 +1,4 @@
-//! The mixed-integer route: matchings as integer variables of the bounded-distortion program (seed, section 10).
+//! The mixed-integer route: matchings as integer variables of the bounded-distortion program (Levi 2021, suppl. sec. 10).
 //!
 //! The program is (9) with the frames of the last layout, over all layouts whose rounded seams close; seams
 //! that are not rounded yet are free. Batches of matchings are chosen by branch and bound (`search`)
@@ -15,7 +15,7 @@ use std::time::Duration;
 /// Settings of [`round_mixed_integer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MixedIntegerOptions {
-    /// Most matchings that are integer variables at a time, b in the seed.
+    /// Maximum number of matchings that are integer variables at a time; b in Levi 2021.
     pub batch: usize,
     /// Most programs solved for a batch, and some more as long as no integers were found. The first integers
     /// are mostly found with fewer; more prove them, or find better ones.

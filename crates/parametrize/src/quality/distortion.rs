@@ -1,4 +1,4 @@
-//! The distortion figures of reports, section 3 of the seed.
+//! The distortion metrics of reports (Levi 2021, suppl. sec. 3).
 
 use super::measure::Measure;
 use super::singular::SingularValues;

@@ -1,4 +1,4 @@
-//! The distortion measures of the seed's sections 3 and 5.
+//! The distortion measures of Levi 2021, suppl. sec. 3 and 5.
 
 use super::scale;
 use super::singular::SingularValues;

@@ -9,7 +9,7 @@ use seamstress_mesh::{Face, FaceData, Metric, TriMesh};
 const DEGENERATE: f64 = 1e-12;
 
 /// Signed singular values `[sigma_1, sigma_2]` of every triangle of a map, in UV units per mesh unit;
-/// `|sigma_2| <= sigma_1`, and `sigma_2` is negative where the triangle is flipped (section 3 of the seed).
+/// `|sigma_2| <= sigma_1`, and `sigma_2` is negative where the triangle is flipped (Levi 2021, suppl. sec. 3).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SingularValues {
     /// The two values; `None` for source triangles without area, which no figure counts.
