@@ -1,4 +1,4 @@
-//! The mixed-integer route: matchings as integer variables of the bounded-distortion program (Levi 2021, suppl. sec. 10).
+//! Mixed-integer rounding: matchings as integer variables of the bounded-distortion program (Levi 2021, suppl. sec. 10).
 //!
 //! The program is (9) with the frames of the last layout, over all layouts whose rounded seams close; seams
 //! that are not rounded yet are free. Batches of matchings are chosen by branch and bound (`search`)
