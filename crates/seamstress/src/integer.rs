@@ -4,30 +4,21 @@ use crate::certify::CertifyOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{AlignedFeatures, FeatureReport, Features, edges_of};
-use crate::map::CornerUvs;
+use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, GridSize, IntegerMapOptions};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
-use seamstress_parametrize::map::{Certificate, Cone};
+use seamstress_parametrize::map::Certificate;
 use seamstress_parametrize::{self as method};
 use seamstress_quantize::{
-    self as quantize, IntegerCertificate, IntegerError, IntegerSolution, IntegerStats,
-    to_aligned_integer_map,
+    IntegerCertificate, IntegerError, IntegerSolution, IntegerStats, to_aligned_integer_map,
 };
 use serde::Serialize;
-#[cfg(feature = "io")]
-use std::{io, path::Path};
 
-/// A certified seamless map whose unit grid closes up over the surface: translations and cones are whole numbers.
-#[derive(Debug, Clone)]
-pub struct IntegerGridMap {
-    surface: Surface,
-    map: quantize::IntegerMap,
-    corners: CornerUvs,
-    features: Option<AlignedFeatures>,
-    report: IntegerMapReport,
-}
+/// A certified seamless map whose unit grid closes up over the surface: translations and cones are whole numbers, and
+/// UVs are in grid units.
+pub type IntegerGridMap = SeamlessMap<IntegerMapReport>;
 
 /// How an integer-grid map was made, and how good it is.
 #[derive(Debug, Clone, Serialize)]
@@ -92,8 +83,7 @@ impl GridReport {
         }
     }
 
-    /// What was asked for, and what came out.
-    pub(crate) fn line(&self) -> String {
+    fn line(&self) -> String {
         let asked = match self.requested {
             GridSize::Quads(quads) => format!("{quads} quads"),
             GridSize::EdgeLength(length) => format!("edge length {}", rounded(length)),
@@ -114,69 +104,13 @@ impl std::fmt::Display for GridReport {
     }
 }
 
-impl IntegerGridMap {
-    /// The surface it is of.
-    pub fn surface(&self) -> &Surface {
-        &self.surface
-    }
+impl Described for IntegerMapReport {
+    const TITLE: &'static str = "Integer-grid map";
+    // One check a cell.
+    const CHECK: Option<f64> = Some(1.0);
 
-    /// The UVs, grid units: one for each vertex, and one more wherever a seam gives it another.
-    pub fn uvs(&self) -> &[[f64; 2]] {
-        &self.corners.uvs
-    }
-
-    /// For each face of the surface the UVs of its corners.
-    pub fn face_uvs(&self) -> &[[u32; 3]] {
-        &self.corners.faces
-    }
-
-    /// The UV of every corner, three a face.
-    pub fn corner_uvs(&self) -> &[[f64; 2]] {
-        self.map.corner_uvs()
-    }
-
-    /// Interior vertices with an angle other than a full turn, ascending; all at grid points.
-    pub fn cones(&self) -> &[Cone] {
-        self.map.seamless().cones()
-    }
-
-    /// What was checked of the whole numbers.
-    pub fn certificate(&self) -> &IntegerCertificate {
-        self.map.certificate()
-    }
-
-    /// How it was made, and how good it is.
-    pub fn report(&self) -> &IntegerMapReport {
-        &self.report
-    }
-
-    /// Writes it as OBJ, with the positions and faces of the surface; the file appears when it is complete.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Unwritable`].
-    #[cfg(feature = "io")]
-    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        crate::files::write(path.as_ref(), |file| self.write_to(file))
-    }
-
-    /// Writes it as OBJ.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    #[cfg(feature = "io")]
-    pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
-        let lines = ["One quad per unit square".into(), self.report.grid.line()];
-        crate::map::write_map(writer, &self.surface, "Integer-grid map", self.corner_uvs(), &lines)
-    }
-
-    #[cfg(feature = "render")]
-    pub(crate) fn inner(&self) -> &quantize::IntegerMap {
-        &self.map
-    }
-
-    #[cfg(feature = "render")]
-    pub(crate) fn features(&self) -> Option<&AlignedFeatures> {
-        self.features.as_ref()
+    fn lines(&self) -> Vec<String> {
+        vec!["One quad per unit square".into(), self.grid.to_string()]
     }
 }
 
@@ -306,8 +240,7 @@ impl Surface {
             features: features.as_ref().map(|features| features.report.clone()),
             components: solution.components,
         };
-        let corners = CornerUvs::new(self.faces(), solution.map.corner_uvs());
-        IntegerGridMap { surface: self.clone(), map: solution.map, corners, features, report }
+        SeamlessMap::reported(self, seamless.clone(), features, report)
     }
 }
 

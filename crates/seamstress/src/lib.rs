@@ -94,6 +94,8 @@ pub use finding::{Elements, Finding, Severity};
 pub use given::MapFile;
 pub use inspection::{Inspection, SurfaceOptions};
 pub use integer::{GridReport, IntegerGridMap, IntegerMapReport};
+#[doc(hidden)]
+pub use map::Described;
 pub use map::{MapReport, SeamlessMap};
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{

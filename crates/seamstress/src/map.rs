@@ -54,6 +54,26 @@ pub struct MapReport {
     pub features: Option<FeatureReport>,
 }
 
+/// What a map is called and how it is drawn, by its report.
+#[doc(hidden)]
+pub trait Described {
+    /// Its title in files.
+    const TITLE: &'static str;
+    /// Side of a check of its texture, if it has a natural one.
+    const CHECK: Option<f64> = None;
+
+    /// What its file says of it.
+    fn lines(&self) -> Vec<String>;
+}
+
+impl Described for MapReport {
+    const TITLE: &'static str = "Seamless map";
+
+    fn lines(&self) -> Vec<String> {
+        vec![self.distortion.line(self.cones.count)]
+    }
+}
+
 impl SeamlessMap {
     pub(crate) fn new(
         surface: &Surface,
@@ -145,11 +165,21 @@ impl<R> SeamlessMap<R> {
         &self.report
     }
 
+    pub(crate) fn inner(&self) -> &method::SeamlessMap {
+        &self.map
+    }
+
+    pub(crate) fn features(&self) -> Option<&AlignedFeatures> {
+        self.features.as_ref()
+    }
+}
+
+#[cfg(feature = "io")]
+impl<R: Described> SeamlessMap<R> {
     /// Writes it as OBJ, with the positions and faces of the surface; the file appears when it is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`].
-    #[cfg(feature = "io")]
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         crate::files::write(path.as_ref(), |file| self.write_to(file))
     }
@@ -158,18 +188,9 @@ impl<R> SeamlessMap<R> {
     ///
     /// # Errors
     /// Those of the writer.
-    #[cfg(feature = "io")]
     pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
-        let lines = [self.distortion.line(self.cones().len())];
-        write_map(writer, &self.surface, "Seamless map", self.corner_uvs(), &lines)
-    }
-
-    pub(crate) fn inner(&self) -> &method::SeamlessMap {
-        &self.map
-    }
-
-    pub(crate) fn features(&self) -> Option<&AlignedFeatures> {
-        self.features.as_ref()
+        let lines = self.report.lines();
+        write_map(writer, &self.surface, R::TITLE, self.corner_uvs(), &lines)
     }
 }
 

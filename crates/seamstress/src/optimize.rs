@@ -3,7 +3,7 @@
 use crate::certify::CertifyOptions;
 use crate::error::{Error, ErrorKind};
 use crate::features::{AlignedFeatures, FeatureReport, Features};
-use crate::map::SeamlessMap;
+use crate::map::{Described, SeamlessMap};
 use crate::options::not_negative;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
@@ -137,6 +137,14 @@ pub struct OptimizeReport {
     /// The features asked for and what became of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub features: Option<FeatureReport>,
+}
+
+impl Described for OptimizeReport {
+    const TITLE: &'static str = "Seamless map";
+
+    fn lines(&self) -> Vec<String> {
+        vec![self.distortion.line(self.cones.count)]
+    }
 }
 
 impl Surface {

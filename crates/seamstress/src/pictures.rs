@@ -2,8 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{AlignedFeatures, FeatureCurves};
-use crate::integer::IntegerGridMap;
-use crate::map::SeamlessMap;
+use crate::map::{Described, SeamlessMap};
 use crate::quads::QuadMesh;
 use crate::report::Measurement;
 use crate::surface::Surface;
@@ -41,11 +40,6 @@ pub struct TextureOptions {
 }
 
 impl TextureOptions {
-    /// With checks of this size unless another is set.
-    fn or_period(self, period: f64) -> Self {
-        Self { period: self.period.or(Some(period)), ..self }
-    }
-
     /// Where the texture has a point of the map.
     fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = match self.angle {
@@ -91,24 +85,14 @@ pub struct MapPictures {
     pub layout: Vec<u8>,
 }
 
-impl<R> SeamlessMap<R> {
-    /// Draws it.
+impl<R: Described> SeamlessMap<R> {
+    /// Draws it; an integer-grid map by default with one check a cell.
     ///
     /// # Errors
     /// [`ErrorKind::NoPicture`].
     pub fn pictures(&self, texture: &TextureOptions) -> Result<MapPictures, Error> {
-        draw_map(self.surface(), self.inner(), self.features(), texture)
-    }
-}
-
-impl IntegerGridMap {
-    /// Draws it, by default with one check a cell.
-    ///
-    /// # Errors
-    /// [`ErrorKind::NoPicture`].
-    pub fn pictures(&self, texture: &TextureOptions) -> Result<MapPictures, Error> {
-        let texture = texture.or_period(1.0);
-        draw_map(self.surface(), self.inner().seamless(), self.features(), &texture)
+        let texture = TextureOptions { period: texture.period.or(R::CHECK), ..*texture };
+        draw_map(self.surface(), self.inner(), self.features(), &texture)
     }
 }
 

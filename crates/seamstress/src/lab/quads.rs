@@ -3,6 +3,7 @@
 use crate::certify::CertifyOptions;
 use crate::error::{Error, ErrorKind};
 use crate::inspection::Inspection;
+use crate::map::Described;
 use crate::quality::PolygonMesh;
 use crate::report::{ConeReport, Distortion, SeamReport, VERSION};
 use crate::surface::Surface;
@@ -68,6 +69,14 @@ pub struct QuadInput {
     pub vertices: usize,
     /// Quads.
     pub quads: usize,
+}
+
+impl Described for QuadLayoutReport {
+    const TITLE: &'static str = "Layout of a quad mesh";
+
+    fn lines(&self) -> Vec<String> {
+        vec!["Every two triangles are a unit square".into()]
+    }
 }
 
 impl PolygonMesh {
