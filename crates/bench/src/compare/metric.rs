@@ -76,13 +76,24 @@ const IRREGULAR: Metric = Metric {
     value: |report| report.number("/quads/irregular/count"),
     scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
 };
-/// Quads that are inverted, folded or self-intersecting.
+/// By how much the number of quads misses the one asked for, per cent.
+const OFF: Metric = Metric {
+    title: "off %",
+    decimals: 1,
+    value: |report| {
+        let requested = report.number("/grid/requested/quads")?;
+        Some(100.0 * (report.number("/grid/quads")? / requested - 1.0).abs())
+    },
+    scale: Some(Scale { ideal: 0.0, floor: 2.0 }),
+};
+/// Quads that are inverted, self-intersecting or folded; reports of older builds have other words.
 const BAD_QUADS: Metric = Metric {
     title: "bad quads",
     decimals: 0,
     value: |report| {
-        let counts = ["inverted", "crossed", "bent"];
-        counts.iter().map(|kind| report.number(&format!("/orientation/{kind}"))).sum()
+        let kinds = [["inverted"; 2], ["self_intersecting", "crossed"], ["folded", "bent"]];
+        let count = |kind: &&str| report.number(&format!("/orientation/{kind}"));
+        kinds.iter().map(|words| words.iter().find_map(|kind| count(&kind))).sum()
     },
     scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
 };
@@ -90,7 +101,8 @@ const BAD_QUADS: Metric = Metric {
 /// The metrics of `map`.
 pub(super) const MAP_METRICS: &[Metric] = &[TAU, ENERGY, CONES, SECONDS];
 /// The metrics of `quad`: tau and energy are those of the integer-grid map.
-pub(super) const QUAD_METRICS: &[Metric] = &[QUADS, IRREGULAR, BAD_QUADS, TAU, ENERGY, SECONDS];
+pub(super) const QUAD_METRICS: &[Metric] =
+    &[QUADS, OFF, IRREGULAR, BAD_QUADS, TAU, ENERGY, SECONDS];
 
 #[cfg(test)]
 mod tests {
@@ -111,6 +123,16 @@ mod tests {
         let report = |json: &str| Report::parse(json.as_bytes()).unwrap();
         let some = report(r#"{"orientation": {"inverted": 1, "crossed": 0, "bent": 2}}"#);
         assert_eq!((BAD_QUADS.value)(&some), Some(3.0));
+        let other =
+            report(r#"{"orientation": {"inverted": 1, "self_intersecting": 4, "folded": 2}}"#);
+        assert_eq!((BAD_QUADS.value)(&other), Some(7.0));
         assert_eq!((BAD_QUADS.value)(&report("{}")), None);
+    }
+
+    #[test]
+    fn the_count_is_compared_with_the_one_asked_for() {
+        let json = br#"{"grid": {"quads": 450, "requested": {"quads": 500}}}"#;
+        let off = (OFF.value)(&Report::parse(json).unwrap()).unwrap();
+        assert!((off - 10.0).abs() < 1e-9);
     }
 }
