@@ -26,7 +26,9 @@ pub use layout::anisotropy::{Anisotropy, Stretch};
 pub use layout::conic::Solver;
 pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
-pub use map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
+pub use map::{
+    Alignment, AlignmentTolerance, SeamlessMap, Tolerance, ToleranceError, Violation, Violations,
+};
 #[doc(hidden)]
 pub use method::followed;
 pub use method::{

@@ -18,6 +18,7 @@ mod lay_out;
 mod log;
 mod maps;
 mod options;
+mod placement;
 mod relaxed;
 mod relayout;
 mod round;

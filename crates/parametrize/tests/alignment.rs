@@ -119,7 +119,7 @@ fn a_map_turned_by_a_hair_is_off_in_every_edge() {
         named.push(vertices);
     }
     assert_eq!(named, rim);
-    let wide = AlignmentTolerance { axis: 2e-8, ..AlignmentTolerance::default() };
+    let wide = AlignmentTolerance::axes(2e-8).unwrap();
     let found = Alignment::certify(&map.0, &map.1, &rim, &wide).unwrap();
     assert!((found.axis_error / 1e-8 - 1.0).abs() < 1e-6);
     assert!(found.exact_sides < found.sides);
@@ -167,7 +167,7 @@ fn a_sector_folded_to_nothing_is_refused() {
         [angle.cos(), angle.sin()].map(|c| c * x.hypot(y))
     });
     let map = planar(&squeezed);
-    let loose = AlignmentTolerance { axis: 1.0, sector: 1e-3 };
+    let loose = AlignmentTolerance::axes(1.0).unwrap();
     let found = Alignment::certify(&map.0, &map.1, &[[0, 1], [0, 5]], &loose).unwrap_err().0;
     let [Violation::SectorAngle { vertex: 0, between: [1, 5], quarters }] = found[..] else {
         panic!("{found:?}");

@@ -38,7 +38,7 @@ pub mod walls;
 
 use seamstress_parametrize::map::Tolerance;
 
-pub use certificate::{IntegerCertificate, IntegerMap};
+pub use certificate::{IntegerCertificate, IntegerMap, IntegralTolerance};
 pub use outcome::{IntegerFailure, IntegerStats};
 pub use solve::{IntegerError, IntegerSolution, to_aligned_integer_map, to_integer_map};
 

@@ -184,7 +184,7 @@ fn the_certificate_refuses_what_is_not_integral() {
     let soup = testkit::bumpy(&testkit::icosphere(1), 0.05, 1);
     let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
     let good = solution.map.corner_uvs().to_vec();
-    let tolerance = Tolerance { seam: 1e-2, angle: 0.1 };
+    let tolerance = Tolerance::new(1e-2, 0.1).unwrap();
     let refused = |uvs: Vec<[f64; 2]>| IntegerMap::certify(&mesh, uvs, &tolerance).unwrap_err().0;
     assert!(IntegerMap::certify(&mesh, good.clone(), &tolerance).is_ok());
 

@@ -3,7 +3,6 @@
 use crate::error::{Error, Stage};
 use crate::features::{FeatureReport, Features};
 use crate::finding::Finding;
-use crate::options::not_negative;
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
 use crate::surface::Surface;
 use seamstress_parametrize::map::Certificate;
@@ -37,8 +36,8 @@ impl Default for CertifyOptions {
     fn default() -> Self {
         Self {
             features: Features::none(),
-            tolerance: Tolerance::default().seam,
-            alignment_tolerance: AlignmentTolerance::default().axis,
+            tolerance: Tolerance::default().seam(),
+            alignment_tolerance: AlignmentTolerance::default().axis(),
         }
     }
 }
@@ -56,12 +55,14 @@ impl CertifyOptions {
         self
     }
 
-    pub(crate) fn seam_tolerance(&self) -> Tolerance {
-        Tolerance { seam: self.tolerance, ..Tolerance::default() }
+    pub(crate) fn seam_tolerance(&self) -> Result<Tolerance, Error> {
+        Tolerance::seams(self.tolerance)
+            .map_err(|error| Error::options(format!("tolerance: {error}")))
     }
 
-    fn axis_tolerance(&self) -> AlignmentTolerance {
-        AlignmentTolerance { axis: self.alignment_tolerance, ..AlignmentTolerance::default() }
+    fn axis_tolerance(&self) -> Result<AlignmentTolerance, Error> {
+        AlignmentTolerance::axes(self.alignment_tolerance)
+            .map_err(|error| Error::options(format!("alignment_tolerance: {error}")))
     }
 }
 
@@ -145,8 +146,7 @@ impl Surface {
         face_uvs: &[[u32; 3]],
         options: &CertifyOptions,
     ) -> Result<Verdict, Error> {
-        not_negative("tolerance", options.tolerance)?;
-        not_negative("alignment_tolerance", options.alignment_tolerance)?;
+        let (tolerance, axis_tolerance) = (options.seam_tolerance()?, options.axis_tolerance()?);
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let features = match options.features.is_none() {
             true => None,
@@ -165,7 +165,7 @@ impl Surface {
             alignment_violations: Vec::new(),
             features: features.as_ref().map(|features| features.report().clone()),
         };
-        let map = match SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance()) {
+        let map = match SeamlessMap::certify(self.mesh(), corner_uvs, &tolerance) {
             Ok(map) => map,
             Err(violations) => {
                 verdict.violations = self.findings(&violations);
@@ -177,8 +177,7 @@ impl Surface {
         verdict.cones = Some(ConeReport::new(map.cones()));
         verdict.seams = Some(SeamReport::new(map.seams()));
         if let Some(features) = features {
-            let tolerance = options.axis_tolerance();
-            match Alignment::certify(self.mesh(), &map, features.edges(), &tolerance) {
+            match Alignment::certify(self.mesh(), &map, features.edges(), &axis_tolerance) {
                 Ok(alignment) => verdict.alignment = Some(alignment),
                 Err(violations) => verdict.alignment_violations = self.findings(&violations),
             }
@@ -197,10 +196,10 @@ impl Surface {
         face_uvs: &[[u32; 3]],
         options: &CertifyOptions,
     ) -> Result<Measurements, Error> {
-        not_negative("tolerance", options.tolerance)?;
+        let tolerance = options.seam_tolerance()?;
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let singular = SingularValues::new(self.mesh(), self.metric(), &corner_uvs);
-        let fault = SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance())
+        let fault = SeamlessMap::certify(self.mesh(), corner_uvs, &tolerance)
             .err()
             .map(|violations: Violations| violations.to_string());
         Ok(Measurements {
@@ -218,7 +217,7 @@ impl Surface {
         corner_uvs: Vec<[f64; 2]>,
         options: &CertifyOptions,
     ) -> Result<SeamlessMap, Error> {
-        SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance())
+        SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance()?)
             .map_err(|violations| self.not_a_map(&violations).at_stage(Some(Stage::Certificate)))
     }
 }

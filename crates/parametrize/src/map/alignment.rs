@@ -1,6 +1,7 @@
 //! The certificate of alignment: edges that run along the axes of a map.
 
 use super::certificate::SeamlessMap;
+use super::tolerance::AlignmentTolerance;
 use super::violation::{Violation, Violations};
 use crate::quarter::within;
 use num_complex::Complex64;
@@ -8,22 +9,6 @@ use seamstress_mesh::features::{EdgeSet, Sector, sectors};
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
-
-/// How far rounding may take aligned edges from exactness.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AlignmentTolerance {
-    /// Angle between the image of an edge and the nearer axis, degrees.
-    pub axis: f64,
-    /// Error of the angle of a sector, radians. A wrong angle is off by a quarter turn; needles lose
-    /// digits.
-    pub sector: f64,
-}
-
-impl Default for AlignmentTolerance {
-    fn default() -> Self {
-        Self { axis: 1e-9, sector: 1e-3 }
-    }
-}
 
 /// What was checked of the edges of a map that have to run along its axes, and what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -80,8 +65,8 @@ impl Alignment {
             sectors_by_quarters: BTreeMap::new(),
             sector_error: 0.0,
         };
-        check.check_axes(&aligned, tolerance.axis, &mut figures);
-        check.check_sectors(&aligned, tolerance.sector, &mut figures);
+        check.check_axes(&aligned, tolerance.axis(), &mut figures);
+        check.check_sectors(&aligned, tolerance.sector(), &mut figures);
         if check.violations.is_empty() { Ok(figures) } else { Err(Violations(check.violations)) }
     }
 }
@@ -98,7 +83,7 @@ pub fn edges_along_axes(
     let is_along = |&[a, b]: &[u32; 2]| {
         mesh.edge_between(Vertex(a), Vertex(b)).is_some_and(|edge| {
             let mut sides = std::iter::once(edge).chain(mesh.twin(edge));
-            sides.all(|side| within(degrees_off_axis(check.image(side)), tolerance.axis))
+            sides.all(|side| within(degrees_off_axis(check.image(side)), tolerance.axis()))
         })
     };
     edges.iter().copied().filter(is_along).collect()

@@ -1,25 +1,17 @@
 //! The certificate of a seamless map.
 
+use super::exact::{InUnit, Point};
+use super::fan::is_overwound;
+use super::tolerance::Tolerance;
 use super::violation::{Violation, Violations};
-use crate::quarter::{turn, within};
-use num_complex::Complex64;
+use crate::quarter::{direction, turn, within};
 use seamstress_mesh::{Halfedge, TriMesh, Vertex, VertexData};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// How far rounding may take a map from exactness.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
-    /// Seam mismatch, in mean UV edge lengths. The rounding of the largest coordinate is allowed on top.
-    pub seam: f64,
-    /// Error of an angle sum, radians. A wrong sum is off by a quarter turn; needles lose digits.
-    pub angle: f64,
-}
-
-impl Default for Tolerance {
-    fn default() -> Self {
-        Self { seam: 1e-9, angle: 1e-3 }
-    }
-}
+/// Units in the last place of the largest coordinate of its four ends by which a seam may be open: each
+/// image of an edge is a difference of two coordinates that were rounded, scaled and moved. The maps of
+/// Seamstress need up to 5.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// An interior vertex whose angle is not a full turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -48,12 +40,13 @@ pub struct SeamEdge {
 /// What was checked, and what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Certificate {
     /// Triangles, all of positive orientation by an exact test on the given numbers.
     pub faces: usize,
     /// Interior edges with a jump.
     pub seam_edges: usize,
-    /// Largest seam mismatch, in mean UV edge lengths.
+    /// Largest seam mismatch, in lengths of the edge that does not fit: of the longer of its two images.
     pub seam_residual: f64,
     /// Largest error of an interior angle sum, radians.
     pub angle_error: f64,
@@ -63,6 +56,9 @@ pub struct Certificate {
     pub index_sum: f64,
     /// Euler characteristic.
     pub euler_characteristic: i64,
+    /// Boundary vertices around which the map turns by more than a full turn, by an exact test: it is not
+    /// locally injective there.
+    pub overwound_boundary_vertices: usize,
 }
 
 /// A locally injective, seamless map with cones at multiples of a quarter turn.
@@ -121,32 +117,34 @@ impl SeamlessMap {
 
 struct Check<'a> {
     mesh: &'a TriMesh,
-    /// UVs scaled by a power of two to order one, so that products neither overflow nor vanish.
-    uv: Vec<Complex64>,
-    /// Undoes the scaling.
-    unit: f64,
+    corner_uvs: &'a [Point],
     violations: Vec<Violation>,
 }
 
+/// How the two images of an edge fit.
+struct Fit {
+    /// The nearest number of quarter turns from left to right.
+    quarters: i32,
+    /// The larger of the lengths of the two images. Like the other lengths it is in a unit of the edge's own.
+    length: f64,
+    /// What the rotated left image lacks to the right one.
+    mismatch: f64,
+    /// The rounding of the four ends.
+    rounding: f64,
+    /// Length of the translation.
+    shift: f64,
+    /// From left to right, UV units.
+    translation: Point,
+}
+
 impl<'a> Check<'a> {
-    fn new(mesh: &'a TriMesh, corner_uvs: &[[f64; 2]]) -> Self {
+    fn new(mesh: &'a TriMesh, corner_uvs: &'a [Point]) -> Self {
         let violations = mesh
             .faces()
-            .filter(|f| {
-                corner_uvs[3 * f.at()..3 * f.at() + 3].iter().flatten().any(|x| !x.is_finite())
-            })
+            .filter(|f| f.halfedges().iter().any(|h| !is_finite(corner_uvs[h.at()])))
             .map(|f| Violation::NonFiniteUv { face: f.0 })
             .collect();
-        let span = corner_uvs.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-        let exponent = if span > 0.0 && span.is_finite() { span.log2().floor() } else { 0.0 };
-        let exponent = exponent.clamp(-1000.0, 1000.0);
-        let scale = (-exponent).exp2();
-        let uv = corner_uvs.iter().map(|p| Complex64::new(p[0] * scale, p[1] * scale)).collect();
-        Self { mesh, uv, unit: exponent.exp2(), violations }
-    }
-
-    fn edge(&self, h: Halfedge) -> Complex64 {
-        self.uv[h.next().at()] - self.uv[h.at()]
+        Self { mesh, corner_uvs, violations }
     }
 
     fn run(
@@ -154,8 +152,8 @@ impl<'a> Check<'a> {
         tolerance: &Tolerance,
     ) -> Result<(Vec<SeamEdge>, Vec<Cone>, Certificate), Violations> {
         self.check_orientation();
-        let (seams, seam_residual) = self.check_seams(tolerance.seam);
-        let (cones, angle_error, index_sum) = self.check_indices(tolerance.angle);
+        let (seams, seam_residual) = self.check_seams(tolerance.seam());
+        let (cones, angle_error, index_sum) = self.check_indices(tolerance.angle());
         if !self.violations.is_empty() {
             return Err(Violations(self.violations));
         }
@@ -167,17 +165,19 @@ impl<'a> Check<'a> {
             cones: cones.len(),
             index_sum,
             euler_characteristic: self.mesh.euler_characteristic(),
+            overwound_boundary_vertices: self.overwound(),
         };
         Ok((seams, cones, certificate))
     }
 
+    /// The images of corners in a unit of their own.
+    fn corners<const N: usize>(&self, corners: [Halfedge; N]) -> InUnit<N> {
+        InUnit::new(corners.map(|h| self.corner_uvs[h.at()]))
+    }
+
     fn check_orientation(&mut self) {
         for f in self.mesh.faces() {
-            let [a, b, c] = f.halfedges().map(|h| {
-                let z = self.uv[h.at()];
-                robust::Coord { x: z.re, y: z.im }
-            });
-            let orientation = robust::orient2d(a, b, c);
+            let orientation = self.corners(f.halfedges()).orientation();
             if orientation < 0.0 {
                 self.violations.push(Violation::FlippedTriangle { face: f.0 });
             } else if orientation == 0.0 || orientation.is_nan() {
@@ -186,46 +186,65 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// How the image of an edge left of a half-edge fits the one right of it.
+    fn fit(&self, h: Halfedge, t: Halfedge) -> Fit {
+        let ends = self.corners([h, h.next(), t.next(), t]);
+        let [a, b, c, d] = ends.points;
+        let (left, right) = (b - a, d - c);
+        let between = direction(right) * direction(left).conj();
+        let quarters = (between.arg() / FRAC_PI_2).round() as i32;
+        let translation = c - turn(a, quarters);
+        Fit {
+            quarters,
+            length: left.norm().max(right.norm()),
+            mismatch: (right - turn(left, quarters)).norm(),
+            rounding: ROUNDING * ends.reach(),
+            shift: translation.norm(),
+            translation: ends.in_given_unit(translation),
+        }
+    }
+
     fn check_seams(&mut self, tolerance: f64) -> (Vec<SeamEdge>, f64) {
-        let edges = self.mesh.n_halfedges() as f64;
-        let mean = self.mesh.halfedges().map(|h| self.edge(h).norm()).sum::<f64>() / edges;
-        let span = self.uv.iter().map(|z| z.re.abs().max(z.im.abs())).fold(0.0, f64::max);
-        let allowed = tolerance * mean + 16.0 * f64::EPSILON * span;
         let mut seams = Vec::new();
         let mut largest = 0.0f64;
         for h in self.mesh.interior_edges() {
             let Some(t) = self.mesh.twin(h) else { continue };
-            let (left, right) = (self.edge(h), -self.edge(t));
-            let quarters = ((right * left.conj()).arg() / FRAC_PI_2).round() as i32;
-            let mismatch = (right - turn(left, quarters)).norm();
-            let ends = [self.mesh.origin(h).0, self.mesh.tip(h).0];
-            largest = largest.max(mismatch / mean);
-            if !within(mismatch, allowed) {
-                self.violations.push(Violation::OpenSeam {
-                    vertices: ends,
-                    faces: [h.face().0, t.face().0],
-                    residual: mismatch / mean,
-                });
+            let fit = self.fit(h, t);
+            // An image that is collapsed is a violation by itself; the other one counts then.
+            let residual = if fit.length > 0.0 { fit.mismatch / fit.length } else { 0.0 };
+            let allowed = tolerance * fit.length + fit.rounding;
+            let vertices = [self.mesh.origin(h).0, self.mesh.tip(h).0];
+            largest = largest.max(residual);
+            if !within(fit.mismatch, allowed) || !within(residual, Tolerance::LARGEST_SEAM) {
+                let faces = [h.face().0, t.face().0];
+                self.violations.push(Violation::OpenSeam { vertices, faces, residual });
             }
-            let translation = self.uv[t.next().at()] - turn(self.uv[h.at()], quarters);
-            if quarters != 0 || translation.norm() > allowed {
-                seams.push(SeamEdge {
-                    left: h,
-                    vertices: ends,
-                    matching: quarters.rem_euclid(4),
-                    translation: [translation.re * self.unit, translation.im * self.unit],
-                });
+            if fit.quarters != 0 || fit.shift > allowed {
+                let matching = fit.quarters.rem_euclid(4);
+                let translation = fit.translation;
+                seams.push(SeamEdge { left: h, vertices, matching, translation });
             }
         }
         (seams, largest)
     }
 
-    fn check_indices(&mut self, tolerance: f64) -> (Vec<Cone>, f64, f64) {
-        let mut angle = VertexData::filled(self.mesh.n_vertices(), 0.0);
-        for h in self.mesh.halfedges() {
-            let w = self.edge(h).conj() * -self.edge(h.prev());
-            angle[self.mesh.origin(h)] += w.im.atan2(w.re);
+    /// The sum of the angles at every vertex, radians; those of a flipped triangle are negative.
+    fn angle_sums(&self) -> VertexData<f64> {
+        let mut sums = VertexData::filled(self.mesh.n_vertices(), 0.0);
+        for f in self.mesh.faces() {
+            let corners = f.halfedges();
+            let at = self.corners(corners).points;
+            for k in 0..3 {
+                let [here, next, prev] = [at[k], at[(k + 1) % 3], at[(k + 2) % 3]];
+                let w = (next - here).conj() * (prev - here);
+                sums[self.mesh.origin(corners[k])] += w.im.atan2(w.re);
+            }
         }
+        sums
+    }
+
+    fn check_indices(&mut self, tolerance: f64) -> (Vec<Cone>, f64, f64) {
+        let angle = self.angle_sums();
         let (labels, n_components) = self.mesh.connected_faces();
         let mut sums = vec![0.0; n_components];
         let mut characteristic = vec![0i64; n_components];
@@ -279,35 +298,16 @@ impl<'a> Check<'a> {
         }
         f64::from(index)
     }
+
+    /// The number of boundary vertices around which a map without violations turns by more than a full
+    /// turn.
+    fn overwound(&self) -> usize {
+        let across = |h| self.mesh.twin(h).map_or(0, |t| self.fit(h, t).quarters);
+        let boundary = self.mesh.vertices().filter(|&v| self.mesh.is_boundary(v));
+        boundary.filter(|&v| is_overwound(self.mesh, self.corner_uvs, across, v)).count()
+    }
 }
 
-/// Compares a map's vertices and faces with its source; a map must not touch them.
-///
-/// Positions have to agree exactly: they are written with enough digits.
-pub fn compare_source(
-    source: (&[[f64; 3]], &[[u32; 3]]),
-    map: (&[[f64; 3]], &[[u32; 3]]),
-) -> Vec<Violation> {
-    let mut violations = Vec::new();
-    if source.0.len() != map.0.len() {
-        violations.push(Violation::VertexCount { source_count: source.0.len(), map: map.0.len() });
-    }
-    if source.1.len() != map.1.len() {
-        violations.push(Violation::FaceCount { source_count: source.1.len(), map: map.1.len() });
-    }
-    if !violations.is_empty() {
-        return violations;
-    }
-    for (vertex, (a, b)) in source.0.iter().zip(map.0).enumerate() {
-        if a != b {
-            let distance = (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
-            violations.push(Violation::MovedVertex { vertex: vertex as u32, distance });
-        }
-    }
-    for (face, (a, b)) in source.1.iter().zip(map.1).enumerate() {
-        if a != b {
-            violations.push(Violation::ChangedFace { face: face as u32 });
-        }
-    }
-    violations
+fn is_finite(uv: Point) -> bool {
+    uv.iter().all(|x| x.is_finite())
 }

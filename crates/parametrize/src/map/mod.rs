@@ -2,8 +2,14 @@
 
 mod alignment;
 mod certificate;
+mod exact;
+mod fan;
+mod source;
+mod tolerance;
 mod violation;
 
-pub use alignment::{Alignment, AlignmentTolerance, edges_along_axes};
-pub use certificate::{Certificate, Cone, SeamEdge, SeamlessMap, Tolerance, compare_source};
+pub use alignment::{Alignment, edges_along_axes};
+pub use certificate::{Certificate, Cone, SeamEdge, SeamlessMap};
+pub use source::compare_source;
+pub use tolerance::{AlignmentTolerance, Tolerance, ToleranceError};
 pub use violation::{Violation, Violations};

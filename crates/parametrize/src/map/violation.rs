@@ -66,7 +66,7 @@ pub enum Violation {
     },
     /// The two images of an edge do not differ by a quarter turn and a translation.
     #[error(
-        "edge {}-{} between faces {} and {} does not close: off by {residual:e} mean edge lengths",
+        "edge {}-{} between faces {} and {} does not close: off by {residual:e} of its length",
         vertices[0], vertices[1], faces[0], faces[1]
     )]
     OpenSeam {
@@ -74,7 +74,7 @@ pub enum Violation {
         vertices: [u32; 2],
         /// Its faces.
         faces: [u32; 2],
-        /// Mismatch in mean UV edge lengths.
+        /// Mismatch in lengths of the edge, of the longer of its two images.
         residual: f64,
     },
     /// An interior angle sum that is not a positive multiple of a quarter turn.

@@ -6,10 +6,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 type Uv = [f64; 2];
 
-/// Largest mismatch of a seam, in mean UV edge lengths.
+/// Largest mismatch of a seam, in lengths of the edge.
 const SEAM: f64 = 1e-9;
-/// Rounding allowed on top, as a share of the largest coordinate.
-const ROUNDING: f64 = 1e-14;
+/// Rounding allowed on top, as a share of the largest coordinate of the ends of the edge.
+const ROUNDING: f64 = 4e-15;
 /// Largest error of an angle sum, quarter turns.
 const ANGLE: f64 = 1e-3;
 
@@ -104,15 +104,15 @@ fn directed_edges(faces: &[[u32; 3]]) -> HashMap<(u32, u32), [usize; 2]> {
 /// Both images of an edge must have one length and be parallel or at right angles.
 fn check_seams(edges: &HashMap<(u32, u32), [usize; 2]>, uvs: &[Uv], faults: &mut Vec<String>) {
     let vector = |[from, to]: [usize; 2]| minus(uvs[to], uvs[from]);
-    let total: f64 = edges.values().map(|&e| length(vector(e))).sum();
-    let largest = uvs.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-    let allowed = SEAM * total / edges.len() as f64 + ROUNDING * largest;
     for (&(a, b), &left) in edges {
         let Some(&[start, end]) = edges.get(&(b, a)) else {
             continue;
         };
         let (e, g) = (vector(left), vector([end, start]));
         let longer = length(e).max(length(g));
+        let ends = [left[0], left[1], start, end].map(|corner| uvs[corner]);
+        let largest = ends.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        let allowed = (SEAM * longer + ROUNDING * largest).min(0.01 * longer);
         let skew = dot(e, g).abs().min(cross(e, g).abs()) / longer;
         if (length(e) - length(g)).abs() > allowed || skew > allowed {
             faults.push(format!("edge {a}-{b} does not close"));

@@ -1,0 +1,168 @@
+//! How far a map may be from exactness, within ceilings above which a check would mean nothing.
+
+/// A tolerance that is negative, not a number, or so large that the check would mean nothing.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("a tolerance of {given} {unit} for {what}: it must be from 0 to {largest}")]
+#[non_exhaustive]
+pub struct ToleranceError {
+    /// What the tolerance is for.
+    pub what: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The value given.
+    pub given: f64,
+    /// The largest value that is taken.
+    pub largest: f64,
+}
+
+impl ToleranceError {
+    /// The value if it is from 0 to the largest.
+    ///
+    /// # Errors
+    /// This one.
+    pub fn unless_within(
+        given: f64,
+        largest: f64,
+        what: &'static str,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        match (0.0..=largest).contains(&given) {
+            true => Ok(given),
+            false => Err(Self { what, unit, given, largest }),
+        }
+    }
+}
+
+/// How far rounding may take a seamless map from exactness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    seam: f64,
+    angle: f64,
+}
+
+impl Tolerance {
+    /// Largest seam mismatch that can be allowed, in lengths of the edge.
+    ///
+    /// At a hundredth the two images of an edge still agree in two digits, and every crossing of a seam
+    /// turns by half a degree from a quarter turn at most, so that matchings and the angle sums of all
+    /// vertices with fewer than 80 faces stay unambiguous. Coordinates of four digits on a layout of
+    /// fifty edges are that good. What is open by more is a gap, not a rounding error.
+    pub const LARGEST_SEAM: f64 = 0.01;
+    /// Largest error of an angle sum that can be allowed, radians: an eighth of the half step between
+    /// two multiples of a quarter turn.
+    pub const LARGEST_ANGLE: f64 = 0.1;
+
+    /// Tolerances of seams, in lengths of the edge, and of angle sums, in radians.
+    ///
+    /// # Errors
+    /// Values below 0 or above the largest.
+    pub fn new(seam: f64, angle: f64) -> Result<Self, ToleranceError> {
+        let (of_seams, of_angles) = (("seams", "edge lengths"), ("angle sums", "radians"));
+        let checked =
+            |x, largest, (what, unit)| ToleranceError::unless_within(x, largest, what, unit);
+        Ok(Self {
+            seam: checked(seam, Self::LARGEST_SEAM, of_seams)?,
+            angle: checked(angle, Self::LARGEST_ANGLE, of_angles)?,
+        })
+    }
+
+    /// A tolerance of seams, in lengths of the edge; that of angle sums is the default.
+    ///
+    /// # Errors
+    /// A value below 0 or above [`Tolerance::LARGEST_SEAM`].
+    pub fn seams(seam: f64) -> Result<Self, ToleranceError> {
+        Self::new(seam, Self::default().angle)
+    }
+
+    /// Seam mismatch, in lengths of the edge. The rounding of the coordinates of its own four ends is
+    /// allowed on top, but never more than [`Tolerance::LARGEST_SEAM`] in all.
+    pub fn seam(&self) -> f64 {
+        self.seam
+    }
+
+    /// Error of an angle sum, radians. A wrong sum is off by a quarter turn; needles lose digits.
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self { seam: 1e-9, angle: 1e-3 }
+    }
+}
+
+/// How far rounding may take aligned edges from exactness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlignmentTolerance {
+    axis: f64,
+    sector: f64,
+}
+
+impl AlignmentTolerance {
+    /// Largest angle to an axis that can be allowed, degrees: the ends of the edge are then apart by
+    /// 1.7 % of its length, about as much as [`Tolerance::LARGEST_SEAM`].
+    pub const LARGEST_AXIS: f64 = 1.0;
+    /// Largest error of the angle of a sector that can be allowed, radians.
+    pub const LARGEST_SECTOR: f64 = Tolerance::LARGEST_ANGLE;
+
+    /// Tolerances of the angle to an axis, in degrees, and of the angles of sectors, in radians.
+    ///
+    /// # Errors
+    /// Values below 0 or above the largest.
+    pub fn new(axis: f64, sector: f64) -> Result<Self, ToleranceError> {
+        let (of_axes, of_sectors) = (("aligned edges", "degrees"), ("sectors", "radians"));
+        let checked =
+            |x, largest, (what, unit)| ToleranceError::unless_within(x, largest, what, unit);
+        Ok(Self {
+            axis: checked(axis, Self::LARGEST_AXIS, of_axes)?,
+            sector: checked(sector, Self::LARGEST_SECTOR, of_sectors)?,
+        })
+    }
+
+    /// A tolerance of the angle to an axis, in degrees; that of sectors is the default.
+    ///
+    /// # Errors
+    /// A value below 0 or above [`AlignmentTolerance::LARGEST_AXIS`].
+    pub fn axes(axis: f64) -> Result<Self, ToleranceError> {
+        Self::new(axis, Self::default().sector)
+    }
+
+    /// Angle between the image of an edge and the nearer axis, degrees.
+    pub fn axis(&self) -> f64 {
+        self.axis
+    }
+
+    /// Error of the angle of a sector, radians. A wrong angle is off by a quarter turn; needles lose
+    /// digits.
+    pub fn sector(&self) -> f64 {
+        self.sector
+    }
+}
+
+impl Default for AlignmentTolerance {
+    fn default() -> Self {
+        Self { axis: 1e-9, sector: 1e-3 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tolerances_have_a_ceiling() {
+        assert_eq!(Tolerance::seams(1e-9), Ok(Tolerance::default()));
+        assert_eq!(Tolerance::seams(0.01).map(|t| t.seam()), Ok(0.01));
+        for seam in [-1e-12, 0.011, 10.0, f64::INFINITY, f64::NAN] {
+            assert!(Tolerance::seams(seam).is_err(), "{seam}");
+        }
+        assert!(Tolerance::new(0.0, 0.2).is_err());
+        assert_eq!(AlignmentTolerance::axes(1e-9), Ok(AlignmentTolerance::default()));
+        for (axis, sector) in [(1.5, 1e-3), (90.0, 1e-3), (f64::NAN, 1e-3), (1e-9, 1.0)] {
+            assert!(AlignmentTolerance::new(axis, sector).is_err(), "{axis} {sector}");
+        }
+        let text = Tolerance::seams(10.0).unwrap_err().to_string();
+        assert_eq!(text, "a tolerance of 10 edge lengths for seams: it must be from 0 to 0.01");
+    }
+}
