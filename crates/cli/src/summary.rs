@@ -166,7 +166,7 @@ pub(crate) fn certificate_rows(cones: &ConeReport, certificate: &Certificate) ->
         0 => "none".into(),
         n => format!("{n}: {}", by_index.join(", ")),
     };
-    vec![
+    let mut rows = vec![
         row("cones", &cones),
         row("seams", &counted(certificate.seam_edges, "edge")),
         row(
@@ -176,7 +176,13 @@ pub(crate) fn certificate_rows(cones: &ConeReport, certificate: &Certificate) ->
                 certificate.seam_residual, certificate.angle_error
             ),
         ),
-    ]
+    ];
+    if certificate.overwound_boundary_vertices > 0 {
+        let vertices = counted(certificate.overwound_boundary_vertices, "boundary vertex");
+        let text = "where the map turns by more than a full turn, and overlaps itself";
+        rows.push(row("", &format!("{vertices} {text}")));
+    }
+    rows
 }
 
 /// The distortion, in two rows.
@@ -213,9 +219,13 @@ pub(crate) fn distortion_rows(d: &Distortion) -> Vec<String> {
 
 /// What is integral.
 pub(crate) fn integers_row(certificate: &IntegerCertificate) -> String {
+    let how = match certificate.integral_error {
+        0.0 => "exact".into(),
+        error => format!("to within {error:.1e} grid units"),
+    };
     let mut text = format!(
-        "exact across {}, at {}",
-        counted(certificate.exact_edges, "edge"),
+        "{how} across {}, at {}",
+        counted(certificate.edges, "edge"),
         counted(certificate.integral_cones, "cone")
     );
     if certificate.isoline_edges > 0 {

@@ -235,11 +235,12 @@ impl Check<'_> {
             let vertices = [self.mesh.origin(h).0, self.mesh.tip(h).0];
             let faces = [h.face().0, t.face().0];
             let is_exact = first == second && first.iter().all(|[_, rest]| *rest == 0.0);
-            self.violations.push(if self.tolerance > 0.0 || is_exact {
+            let is_rounding = self.tolerance == 0.0 && error < IntegralTolerance::LARGEST;
+            self.violations.push(if is_rounding && !is_exact {
+                Violation::InexactEdge { vertices, faces }
+            } else {
                 let translation = first.map(|[rounded, _]| rounded);
                 Violation::FractionalTranslation { vertices, faces, translation }
-            } else {
-                Violation::InexactEdge { vertices, faces }
             });
         }
         Translation { nearest, error }

@@ -1,11 +1,11 @@
 //! Integer maps of small shapes, judged by their certificate and by a check of their own.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
-use seamstress_mesh::TriMesh;
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::{MapOptions, Tolerance, Violation, make_map};
+use seamstress_mesh::{Face, TriMesh};
+use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, Violation, make_map};
 use seamstress_quantize::{
-    GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
-    to_integer_map,
+    GridSize, IntegerCertificate, IntegerError, IntegerMap, IntegerOptions, IntegerRounding,
+    IntegerSolution, IntegralTolerance, to_integer_map,
 };
 use seamstress_testkit as testkit;
 use std::collections::HashMap;
@@ -213,6 +213,66 @@ fn the_certificate_refuses_what_is_not_integral() {
     // turned over
     let mirrored = good.iter().map(|[u, v]| [-u, *v]).collect();
     assert!(matches!(refused(mirrored)[0], Violation::FlippedTriangle { .. }));
+}
+
+/// The integer certificate of UVs that are a seamless map to within a thousandth of an edge.
+fn checked(
+    mesh: &TriMesh,
+    uvs: Vec<[f64; 2]>,
+    tolerance: IntegralTolerance,
+) -> Result<IntegerCertificate, Vec<Violation>> {
+    let map = SeamlessMap::certify(mesh, uvs, &Tolerance::new(1e-3, 1e-2).unwrap()).unwrap();
+    IntegerCertificate::check(mesh, &map, &[], tolerance).map_err(|violations| violations.0)
+}
+
+#[test]
+fn maps_of_few_digits_are_checked_to_a_tolerance() {
+    let soup = testkit::bumpy(&testkit::icosphere(1), 0.05, 1);
+    let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
+    let good = solution.map.corner_uvs();
+    let exact = checked(&mesh, good.to_vec(), IntegralTolerance::EXACT).unwrap();
+    assert_eq!(&exact, solution.map.certificate());
+    assert_eq!((exact.exact_edges, exact.integral_error), (exact.edges, 0.0));
+
+    let digits = |x: f64| (x * 1e5).round() / 1e5;
+    let rounded: Vec<_> = good.iter().map(|[u, v]| [digits(u + 2e-5), digits(*v)]).collect();
+    let with = |x| checked(&mesh, rounded.clone(), IntegralTolerance::new(x).unwrap());
+    // Across a half turn both ends count.
+    let certificate = with(1e-4).unwrap();
+    assert!(certificate.exact_edges < certificate.edges);
+    assert!((certificate.integral_error - 4e-5).abs() < 1e-9, "{}", certificate.integral_error);
+    assert_eq!(certificate.largest_translation, exact.largest_translation);
+    assert!(with(1e-5).is_err());
+    let is_inexact = |v: &Violation| matches!(v, Violation::InexactEdge { .. });
+    assert!(with(0.0).unwrap_err().iter().any(is_inexact));
+}
+
+#[test]
+fn a_shifted_seam_is_named_by_its_edges() {
+    // A torus without cones: a chart that is moved by a quarter of a cell opens no seam.
+    let soup = testkit::torus(8, 6, 1.0, 0.4);
+    let (mesh, solution) = integer(&soup, GridSize::Quads(100.0));
+    let mut uvs = solution.map.corner_uvs().to_vec();
+    for corner in &mut uvs[0..3] {
+        corner[0] += 0.25;
+    }
+    let tolerance = IntegralTolerance::new(0.01).unwrap();
+    let sides: Vec<[u32; 3]> =
+        mesh.faces().take(1).map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
+    for tolerance in [IntegralTolerance::EXACT, tolerance] {
+        let found = checked(&mesh, uvs.clone(), tolerance).unwrap_err();
+        let translations = found.iter().filter_map(|v| match v {
+            Violation::FractionalTranslation { vertices, translation, .. } => {
+                let off = translation.map(|x| (x - x.round()).abs());
+                assert!((off[0].max(off[1]) - 0.25).abs() < 1e-9, "{translation:?}");
+                Some(vertices)
+            }
+            _ => None,
+        });
+        let named: Vec<_> = translations.collect();
+        assert_eq!(named.len(), 3, "{found:?}");
+        assert!(named.iter().all(|ends| ends.iter().all(|v| corners.contains(v))));
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::surface::Surface;
 use seamstress_parametrize::map::Certificate;
 use seamstress_parametrize::quality::{SingularValues, measure_all};
 use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use seamstress_quantize::{IntegerCertificate, IntegralTolerance};
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Surface::certify_with`].
@@ -21,23 +22,38 @@ pub struct CertifyOptions {
     #[cfg_attr(feature = "clap", arg(skip))]
     pub features: Features,
 
-    /// How far the sides of a seam may be apart, in edge lengths; for maps written with few digits
+    /// Check an integer-grid map, in grid units: translations across seams and places of cones have to be
+    /// integers, and features have to lie on lines of the grid, with their corners at grid points
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub integer: bool,
+
+    /// How far the sides of a seam may be apart, in lengths of the edge, at most 0.01; for maps written with
+    /// few digits
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
         default_value_t = Self::default().tolerance))]
     pub tolerance: f64,
 
-    /// How far the image of a feature may be off an axis, degrees
+    /// How far the image of a feature may be off an axis, in degrees, at most 1; for maps written with few
+    /// digits
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
         default_value_t = Self::default().alignment_tolerance))]
     pub alignment_tolerance: f64,
+
+    /// How far translations, cones and features of an integer-grid map may be from integers, in grid units,
+    /// at most 0.01; for maps written with few digits [default: exact]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
+        default_value_t = 0.0, hide_default_value = true))]
+    pub integer_tolerance: f64,
 }
 
 impl Default for CertifyOptions {
     fn default() -> Self {
         Self {
             features: Features::none(),
+            integer: false,
             tolerance: Tolerance::default().seam(),
             alignment_tolerance: AlignmentTolerance::default().axis(),
+            integer_tolerance: IntegralTolerance::EXACT.distance(),
         }
     }
 }
@@ -49,7 +65,13 @@ impl CertifyOptions {
         self
     }
 
-    /// Sets how far the sides of a seam may be apart, in edge lengths.
+    /// Asks for an integer-grid map.
+    pub fn integer(mut self) -> Self {
+        self.integer = true;
+        self
+    }
+
+    /// Sets how far the sides of a seam may be apart, in lengths of the edge.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
@@ -63,6 +85,11 @@ impl CertifyOptions {
     fn axis_tolerance(&self) -> Result<AlignmentTolerance, Error> {
         AlignmentTolerance::axes(self.alignment_tolerance)
             .map_err(|error| Error::options(format!("alignment_tolerance: {error}")))
+    }
+
+    fn integral_tolerance(&self) -> Result<IntegralTolerance, Error> {
+        IntegralTolerance::new(self.integer_tolerance)
+            .map_err(|error| Error::options(format!("integer_tolerance: {error}")))
     }
 }
 
@@ -95,6 +122,15 @@ pub struct Verdict {
     /// Why not.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub alignment_violations: Vec<Finding>,
+    /// Whether it is an integer-grid map, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integral: Option<bool>,
+    /// What was checked of its integers, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integer_certificate: Option<IntegerCertificate>,
+    /// Why not, if it is a seamless map.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub integer_violations: Vec<Finding>,
     /// The features asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub features: Option<FeatureReport>,
@@ -103,7 +139,7 @@ pub struct Verdict {
 impl Verdict {
     /// Whether all that was asked for is certified.
     pub fn is_passed(&self) -> bool {
-        self.certified && self.aligned != Some(false)
+        self.certified && self.aligned != Some(false) && self.integral != Some(false)
     }
 }
 
@@ -136,7 +172,8 @@ impl Surface {
         Ok(certified.certificate().clone())
     }
 
-    /// Certifies a map as [`Surface::certify`] does, and the alignment of features; finds out all there is.
+    /// Certifies a map as [`Surface::certify`] does, the alignment of features, and if asked for its integers;
+    /// finds out all there is.
     ///
     /// # Errors
     /// [`ErrorKind::NotAMap`](crate::ErrorKind::NotAMap) if the UVs are not of this surface's faces, and those of [`Surface::features`].
@@ -147,6 +184,7 @@ impl Surface {
         options: &CertifyOptions,
     ) -> Result<Verdict, Error> {
         let (tolerance, axis_tolerance) = (options.seam_tolerance()?, options.axis_tolerance()?);
+        let integral_tolerance = options.integral_tolerance()?;
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let features = match options.features.is_none() {
             true => None,
@@ -163,6 +201,9 @@ impl Surface {
             aligned: None,
             alignment: None,
             alignment_violations: Vec::new(),
+            integral: options.integer.then_some(false),
+            integer_certificate: None,
+            integer_violations: Vec::new(),
             features: features.as_ref().map(|features| features.report().clone()),
         };
         let map = match SeamlessMap::certify(self.mesh(), corner_uvs, &tolerance) {
@@ -176,12 +217,20 @@ impl Surface {
         verdict.certificate = Some(map.certificate().clone());
         verdict.cones = Some(ConeReport::new(map.cones()));
         verdict.seams = Some(SeamReport::new(map.seams()));
-        if let Some(features) = features {
-            match Alignment::certify(self.mesh(), &map, features.edges(), &axis_tolerance) {
+        let aligned = features.as_ref().map_or(Vec::new(), |features| features.edges().to_vec());
+        if features.is_some() {
+            match Alignment::certify(self.mesh(), &map, &aligned, &axis_tolerance) {
                 Ok(alignment) => verdict.alignment = Some(alignment),
                 Err(violations) => verdict.alignment_violations = self.findings(&violations),
             }
             verdict.aligned = Some(verdict.alignment.is_some());
+        }
+        if options.integer {
+            match IntegerCertificate::check(self.mesh(), &map, &aligned, integral_tolerance) {
+                Ok(certificate) => verdict.integer_certificate = Some(certificate),
+                Err(violations) => verdict.integer_violations = self.findings(&violations),
+            }
+            verdict.integral = Some(verdict.integer_certificate.is_some());
         }
         Ok(verdict)
     }

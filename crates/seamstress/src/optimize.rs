@@ -4,13 +4,11 @@ use crate::certify::CertifyOptions;
 use crate::error::{Error, ErrorKind};
 use crate::features::{AlignedFeatures, FeatureReport, Features};
 use crate::map::{Described, SeamlessMap};
-use crate::options::not_negative;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use seamstress_parametrize::map::Certificate;
 use seamstress_parametrize::{
-    Anisotropy, Objective, RelayoutOptions, RelayoutStats, Solver, Stretch, Tolerance,
-    lay_out_disk, relayout,
+    Anisotropy, Objective, RelayoutOptions, RelayoutStats, Solver, Stretch, lay_out_disk, relayout,
 };
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +36,7 @@ pub struct OptimizeOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub features_strict: bool,
 
-    /// How far the sides of a seam of the map may be apart, in edge lengths [default: 1e-9]
+    /// How far the sides of a seam of the map may be apart, in lengths of the edge, at most 0.01 [default: 1e-9]
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = crate::options::parse::not_negative,
         requires = "map"))]
     pub tolerance: Option<f64>,
@@ -96,9 +94,8 @@ impl OptimizeOptions {
     }
 
     fn to_method(&self, surface: &Surface) -> Result<RelayoutOptions, Error> {
-        self.tolerance.map_or(Ok(()), |x| not_negative("tolerance", x))?;
         let mut options = RelayoutOptions::new(self.objective);
-        options.tolerance = Tolerance { seam: self.certify().tolerance, ..Tolerance::default() };
+        options.tolerance = self.certify().seam_tolerance()?;
         options.strict_features = self.features_strict;
         options.settings.conic.solver = match self.solver {
             ConicSolver::Own => Solver::Own,

@@ -21,6 +21,7 @@ Examples:
   seamstress check bunny.ply other_program.obj --tolerance 1e-5
   seamstress check part.obj --features angle:40 --align-boundary --picture part.png
   seamstress check part.obj part_map.obj --features sharp:part.sharp
+  seamstress check part.obj grid.obj --integer --features angle:40 --align-boundary
   seamstress check scan.stl --json | jq '.faults[].message'";
 
 /// Faults of each kind that are printed.
@@ -33,7 +34,8 @@ const FEW_DIGITS: f64 = 0.01;
 /// With a mesh alone: its size, its topology, and everything that keeps it from being mapped. With a
 /// map as well: whether the map has the mesh's vertices and faces and is seamless, and its distortion;
 /// or else everything that is wrong with it. With features: their curves and corners, and whether the
-/// map has them on its grid lines. Vertices, faces and components are counted from 0.
+/// map has them along its axes. With `--integer`: whether the map is an integer-grid map, with the
+/// features on its grid lines. Vertices, faces and components are counted from 0.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct CheckArgs {
@@ -47,16 +49,28 @@ pub(crate) struct CheckArgs {
     #[command(flatten)]
     surface: SurfaceOptions,
 
-    /// How far the sides of a seam may be apart, in edge lengths of the map; foreign maps of few digits
-    /// need more [default: 1e-9]
+    /// Check that the map is an integer-grid map, in grid units
+    ///
+    /// Translations across seams and places of cones have to be integers, and features have to lie on
+    /// lines of the grid, with their corners at grid points.
+    #[arg(long, requires = "map")]
+    integer: bool,
+
+    /// How far the sides of a seam may be apart, in lengths of the edge, at most 0.01; maps written with
+    /// few digits need more than the default [default: 1e-9]
     #[arg(long, value_name = "X", value_parser = not_negative, requires = "map")]
     tolerance: Option<f64>,
 
     #[command(flatten)]
     features: FeatureArgs,
 
-    /// How far a feature may be off the axes of the map, in degrees; foreign maps of few digits need more
-    /// [default: 1e-9]
+    /// How far translations, cones and features may be from integers, in grid units, at most 0.01; maps
+    /// written with few digits need it [default: exact]
+    #[arg(long, value_name = "X", value_parser = not_negative, requires = "integer")]
+    integer_tolerance: Option<f64>,
+
+    /// How far a feature may be off the axes of the map, in degrees, at most 1; maps written with few digits
+    /// need more than the default [default: 1e-9]
     #[arg(long, value_name = "DEGREES", value_parser = not_negative, requires = "map")]
     alignment_tolerance: Option<f64>,
 
@@ -89,6 +103,8 @@ impl CheckArgs {
         options.tolerance = self.tolerance.unwrap_or(options.tolerance);
         options.alignment_tolerance =
             self.alignment_tolerance.unwrap_or(options.alignment_tolerance);
+        options.integer = self.integer;
+        options.integer_tolerance = self.integer_tolerance.unwrap_or(options.integer_tolerance);
         options
     }
 
@@ -127,7 +143,10 @@ impl CheckedMap {
         } else if is_aligned == Some(false) {
             value["alignment"] = json!({ "violations": value["alignment_violations"] });
         }
-        for gone in ["alignment_violations", "features"] {
+        if self.is_certified() && value["integral"] == false {
+            value["integer_certificate"] = json!({ "violations": value["integer_violations"] });
+        }
+        for gone in ["alignment_violations", "integer_violations", "features"] {
             value.as_object_mut().map(|fields| fields.remove(gone));
         }
         value["file"] = path.to_string_lossy().into();
@@ -147,6 +166,9 @@ impl CheckedMap {
             let count = counted(violations.len(), "violation");
             let text = format!("failed: {count} (elements counted from 0)");
             rows.push(row("certificate", &text));
+            if verdict.is_some_and(|verdict| verdict.integral.is_some()) {
+                rows.push(row("integers", "not checked, since the map is not seamless"));
+            }
             return rows;
         }
         let Some(verdict) = verdict else { return rows };
@@ -160,6 +182,14 @@ impl CheckedMap {
             rows.extend(off_axis_row(violations));
             let count = counted(violations.len(), "violation");
             rows.push(row("alignment", &format!("failed: {count}")));
+        }
+        rows.extend(verdict.integer_certificate.iter().map(summary::integers_row));
+        if verdict.integral == Some(false) {
+            let violations = &verdict.integer_violations;
+            rows.extend(violation_rows(violations));
+            let count = counted(violations.len(), "violation");
+            let hint = "maps written with few digits need `--integer-tolerance`";
+            rows.push(row("integers", &format!("failed: {count}; {hint}")));
         }
         rows
     }
@@ -212,6 +242,8 @@ impl Command for CheckArgs {
                 "tolerance": options.tolerance,
                 "features": options.features,
                 "alignment_tolerance": options.alignment_tolerance,
+                "integer": options.integer,
+                "integer_tolerance": options.integer_tolerance,
             },
             "input": checked.inspection.report(),
         });

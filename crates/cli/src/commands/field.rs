@@ -53,7 +53,7 @@ pub(crate) struct FieldArgs {
     #[arg(long, requires = "map")]
     repair: bool,
 
-    /// How far the sides of a seam may be apart, in edge lengths of the map
+    /// How far the sides of a seam may be apart, in lengths of the edge, at most 0.01
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = CertifyOptions::default().tolerance)]
     tolerance: f64,
 

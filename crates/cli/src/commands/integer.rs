@@ -71,7 +71,7 @@ pub(crate) struct IntegerArgs {
     #[command(flatten)]
     method: MapOptions,
 
-    /// How far the sides of a seam may be apart in the map that is read, in edge lengths of that map
+    /// How far the sides of a seam may be apart in the map that is read, in lengths of the edge, at most 0.01
     #[arg(long, value_name = "X", value_parser = not_negative, requires = "map")]
     tolerance: Option<f64>,
 

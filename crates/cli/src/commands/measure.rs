@@ -47,8 +47,8 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     surface: SurfaceOptions,
 
-    /// How far the sides of a seam may be apart, in edge lengths of the map, for it to count as seamless
-    /// [default: 1e-9]
+    /// How far the sides of a seam may be apart, in lengths of the edge, for the map to count as seamless; at
+    /// most 0.01 [default: 1e-9]
     #[arg(long, value_name = "X", value_parser = not_negative)]
     tolerance: Option<f64>,
 

@@ -186,3 +186,134 @@ fn a_reader_that_leaves_is_no_fault() {
     drop(child.stdout.take());
     assert_eq!(crate::harness::wait(child).code, Some(0));
 }
+
+/// The map in `name` with every texture coordinate changed, as `changed.obj`.
+fn change_uvs(folder: &Folder, name: &str, change: impl Fn(f64, f64) -> [f64; 2]) {
+    let line = |line: &str| match line.strip_prefix("vt ") {
+        Some(uv) => {
+            let (u, v) = uv.split_once(' ').unwrap();
+            let [u, v] = change(u.parse().unwrap(), v.parse().unwrap());
+            format!("vt {u} {v}\n")
+        }
+        None => format!("{line}\n"),
+    };
+    folder.write("changed.obj", folder.read(name).lines().map(line).collect::<String>());
+}
+
+#[test]
+fn integer_grid_maps_are_certified_and_others_refused() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::bumpy(&testkit::icosphere(2), 0.1, 1));
+    folder.expect(0, &["integer", "in.obj", "--quads", "300", "-o", "grid.obj", "--quiet"]);
+    let run = folder.expect(0, &["check", "in.obj", "grid.obj", "--integer"]);
+    assert!(run.stdout.contains("integers     exact across 480 edges"), "{}", run.stdout);
+    let json = folder.expect(0, &["check", "in.obj", "grid.obj", "--integer", "--json"]);
+    let value: Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(value["map"]["integral"], true);
+    assert_eq!(value["map"]["integer_certificate"]["exact_edges"], 480);
+    assert_eq!(value["map"]["integer_certificate"]["integral_error"], 0.0);
+
+    // A seamless map that is none.
+    folder.expect(0, &["map", "in.obj", "-o", "map.obj", "--quiet"]);
+    let run = folder.expect(1, &["check", "in.obj", "map.obj", "--integer"]);
+    assert!(run.stdout.contains("certificate  passed"), "{}", run.stdout);
+    assert!(run.stdout.contains("violation    the cone at vertex"), "{}", run.stdout);
+    assert!(run.stdout.contains("integers     failed: "), "{}", run.stdout);
+    let json = folder.expect(1, &["check", "in.obj", "map.obj", "--integer", "--json"]);
+    let value: Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(
+        (&value["map"]["certified"], &value["map"]["integral"]),
+        (&true.into(), &false.into())
+    );
+    let violations = value["map"]["integer_certificate"]["violations"].as_array().unwrap();
+    assert!(violations.iter().any(|v| v["kind"] == "fractional-cone"));
+    folder.expect(0, &["check", "in.obj", "map.obj"]);
+
+    // Cones in the middle of cells.
+    change_uvs(&folder, "grid.obj", |u, v| [u + 0.5, v + 0.5]);
+    let run = folder.expect(1, &["check", "in.obj", "changed.obj", "--integer"]);
+    assert!(run.stdout.contains(", which is not a grid point"), "{}", run.stdout);
+    // And a map that is not even seamless.
+    change_uvs(&folder, "grid.obj", |u, v| [2.0 * u, v]);
+    let run = folder.expect(1, &["check", "in.obj", "changed.obj", "--integer"]);
+    assert!(run.stdout.contains("integers     not checked"), "{}", run.stdout);
+    folder.expect(2, &["check", "in.obj", "--integer"]);
+}
+
+#[test]
+fn integer_grid_maps_of_few_digits_need_a_tolerance() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::bumpy(&testkit::icosphere(2), 0.1, 1));
+    folder.expect(0, &["integer", "in.obj", "--quads", "300", "-o", "grid.obj", "--quiet"]);
+    let digits = |x: f64| (x * 1e5).round() / 1e5;
+    change_uvs(&folder, "grid.obj", |u, v| [digits(u + 0.000_02), digits(v)]);
+    let check = ["check", "in.obj", "changed.obj", "--integer", "--tolerance", "1e-3"];
+    let run = folder.expect(1, &check);
+    assert!(run.stdout.contains("need `--integer-tolerance`"), "{}", run.stdout);
+    let with = |tolerance| [&check[..], &["--integer-tolerance", tolerance]].concat();
+    let run = folder.expect(0, &with("1e-4"));
+    assert!(run.stdout.contains("integers     to within 4.0e-5 grid units"), "{}", run.stdout);
+    folder.expect(1, &with("1e-5"));
+    folder.expect(2, &with("0.3"));
+}
+
+#[test]
+fn features_of_integer_grid_maps_lie_on_lines_of_the_grid() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::subdivide(&testkit::l_bracket()));
+    let features = ["--features", "angle:40", "--align-boundary"];
+    let integer = ["integer", "in.obj", "--quads", "400", "-o", "grid.obj", "--quiet"];
+    folder.expect(0, &[&integer[..], &features].concat());
+    let check = |name| [&["check", "in.obj", name, "--integer"][..], &features].concat();
+    let run = folder.expect(0, &check("grid.obj"));
+    assert!(run.stdout.contains("aligned edges"), "{}", run.stdout);
+    // Everything moved by a quarter of a cell: still on the axes, but off the lines.
+    change_uvs(&folder, "grid.obj", |u, v| [u + 0.25, v]);
+    let run = folder.expect(1, &check("changed.obj"));
+    assert!(run.stdout.contains("alignment    passed"), "{}", run.stdout);
+    assert!(run.stdout.contains("is not at an integer in face"), "{}", run.stdout);
+}
+
+#[test]
+fn tolerances_that_would_pass_anything_are_wrong_usage() {
+    let folder = mapped();
+    let check = ["check", "in.obj", "map.obj"];
+    for tolerance in
+        [["--tolerance", "10"], ["--tolerance", "0.02"], ["--alignment-tolerance", "2"]]
+    {
+        let run = folder.expect(2, &[&check[..], &tolerance].concat());
+        assert!(run.stderr.contains("it must be from 0 to"), "{}", run.stderr);
+    }
+    folder.expect(2, &["measure", "in.obj", "map.obj", "--tolerance", "10"]);
+    folder.expect(2, &["field", "in.obj", "map.obj", "-o", "f.rawfield", "--tolerance", "10"]);
+    let layout = ["layout", "in.obj", "map.obj", "--objective", "arap", "-o", "o.obj"];
+    folder.expect(2, &[&layout[..], &["--tolerance", "10"]].concat());
+    let integer = ["integer", "in.obj", "map.obj", "--quads", "100", "-o", "o.obj"];
+    folder.expect(2, &[&integer[..], &["--tolerance", "10"]].concat());
+    folder.expect(0, &[&check[..], &["--tolerance", "0.01"]].concat());
+}
+
+#[test]
+fn boundary_vertices_that_turn_too_far_are_counted() {
+    let folder = Folder::new();
+    // Five right angles around a vertex of the boundary.
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 1 0 1\nv 0 1 1\n";
+    let faces = [[2, 3, 1, 2], [3, 4, 2, 3], [4, 5, 3, 4], [5, 6, 4, 1], [6, 7, 1, 2]];
+    let write = |corner: fn(i32, i32) -> String| {
+        let face = |[a, b, c, d]: [i32; 4]| {
+            format!("f {} {} {}\n", corner(1, 5), corner(a, c), corner(b, d))
+        };
+        faces.map(face).concat()
+    };
+    folder.write("in.obj", format!("{mesh}{}", write(|v, _| v.to_string())));
+    let uvs = "vt 1 0\nvt 0 1\nvt -1 0\nvt 0 -1\nvt 0 0\n";
+    folder.write("map.obj", format!("{mesh}{uvs}{}", write(|v, uv| format!("{v}/{uv}"))));
+    let run = folder.expect(0, &["check", "in.obj", "map.obj"]);
+    let line = "1 boundary vertex where the map turns by more than a full turn";
+    assert!(run.stdout.contains(line), "{}", run.stdout);
+    let run = folder.expect(0, &["check", "in.obj", "map.obj", "--json"]);
+    let value: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(value["map"]["certificate"]["overwound_boundary_vertices"], 1);
+    let mapped = mapped().expect(0, &["check", "in.obj", "map.obj"]);
+    assert!(!mapped.stdout.contains("full turn"), "{}", mapped.stdout);
+}

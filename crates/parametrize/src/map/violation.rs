@@ -95,7 +95,7 @@ pub enum Violation {
         faces: [u32; 2],
     },
     /// A translation across an edge is not integral.
-    #[error("edge {}-{} between faces {} and {} has the translation ({}, {})",
+    #[error("edge {}-{} between faces {} and {} has the translation ({}, {}), which is not integral",
         vertices[0], vertices[1], faces[0], faces[1], translation[0], translation[1])]
     FractionalTranslation {
         /// Ends of the edge.
@@ -106,7 +106,7 @@ pub enum Violation {
         translation: [f64; 2],
     },
     /// A cone is not at a grid point.
-    #[error("the cone at vertex {vertex} lies at ({}, {})", uv[0], uv[1])]
+    #[error("the cone at vertex {vertex} lies at ({}, {}), which is not a grid point", uv[0], uv[1])]
     FractionalCone {
         /// The vertex.
         vertex: u32,
@@ -114,7 +114,7 @@ pub enum Violation {
         uv: [f64; 2],
     },
     /// A vertex at which aligned edges turn is not at a grid point.
-    #[error("the corner at vertex {vertex} lies at ({}, {})", uv[0], uv[1])]
+    #[error("the corner at vertex {vertex} lies at ({}, {}), which is not a grid point", uv[0], uv[1])]
     FractionalCorner {
         /// The vertex.
         vertex: u32,
