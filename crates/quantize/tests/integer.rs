@@ -257,8 +257,7 @@ fn a_shifted_seam_is_named_by_its_edges() {
         corner[0] += 0.25;
     }
     let tolerance = IntegralTolerance::new(0.01).unwrap();
-    let sides: Vec<[u32; 3]> =
-        mesh.faces().take(1).map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
+    let corners = mesh.face_vertices(Face(0)).map(|v| v.0);
     for tolerance in [IntegralTolerance::EXACT, tolerance] {
         let found = checked(&mesh, uvs.clone(), tolerance).unwrap_err();
         let translations = found.iter().filter_map(|v| match v {
