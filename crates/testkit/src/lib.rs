@@ -6,7 +6,9 @@
 //! crate serves tests alone.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod collection;
 mod consistency;
+mod data;
 mod flips;
 mod integer_maps;
 mod modify;
@@ -18,7 +20,9 @@ mod solids;
 mod tori;
 mod voxels;
 
+pub use collection::{FOLDER, REQUIRED, in_collection};
 pub use consistency::{CheckedSeam, consistency_faults};
+pub use data::{DataMesh, PolygonSoup, data_meshes};
 pub use flips::random_flips;
 pub use integer_maps::{IntegerMap, random_voxels, squares};
 pub use modify::{

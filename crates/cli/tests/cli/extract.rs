@@ -2,10 +2,10 @@
 
 use crate::harness::{Folder, lines_of};
 use seamstress_io::{MapObj, write_map_obj};
+use seamstress_testkit as testkit;
 use seamstress_testkit::{IntegerMap, cube, disk_grid, slab_with_holes, squares, torus};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 
 fn write_map(folder: &Folder, name: &str, map: &IntegerMap) {
     let mut bytes = Vec::new();
@@ -153,13 +153,7 @@ fn smoothing_keeps_the_quads() {
 /// The maps that libQEx is tested with.
 #[test]
 fn maps_with_folds_from_the_collection() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    let collection = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
-    let map = collection.join("duck_miq_4_param.obj");
-    if !map.is_file() {
-        println!("skipped: there is no file {}", map.display());
-        return;
-    }
+    let Some(map) = testkit::in_collection("duck_miq_4_param.obj") else { return };
     let folder = Folder::new();
     let map = map.to_string_lossy();
     let run = folder.expect(1, &["extract", &map, "-o", "q.obj"]);
@@ -196,12 +190,7 @@ fn same_places(ours: &[[f64; 3]], theirs: &[[f64; 3]]) -> Vec<Option<usize>> {
 /// What of the quad meshes that libQEx makes of its test maps is found again; chapter 9 says why not all.
 #[test]
 fn quads_of_folded_maps_compared_with_those_of_libqex() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    let collection = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
-    if !collection.join("duck_miq_4_param.obj").is_file() {
-        println!("skipped: there are no maps in {}", collection.display());
-        return;
-    }
+    let Some(collection) = testkit::in_collection("") else { return };
     // Coarseness; quads, vertices, boundary loops, by valence; vertices and quads that libQEx has too.
     let cases = [
         (4, [1071, 1075, 1], [(3, 21), (5, 12)].as_slice(), [1065, 1031]),

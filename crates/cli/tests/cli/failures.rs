@@ -1,8 +1,11 @@
 //! Exit codes, messages, and that a failure leaves nothing behind.
 
-use crate::harness::{Folder, wait};
+use crate::harness::Folder;
+#[cfg(unix)]
+use crate::harness::wait;
 use seamstress_testkit as testkit;
-use std::time::{Duration, Instant};
+#[cfg(unix)]
+use std::time::Duration;
 
 #[test]
 fn help_and_version() {
@@ -89,12 +92,12 @@ fn outputs_that_cannot_be_written_are_2_and_found_first() {
         &["-o", "a.obj", "--pictures", "file"],
         &["-o", "a.obj", "--pictures", "file/deeper"],
     ];
-    let start = Instant::now();
     for arguments in wrong {
-        let run = folder.expect(2, &[&["map", "in.obj"], arguments].concat());
+        // Were they found last, the time limit would come first.
+        let run =
+            folder.expect(2, &[&["map", "in.obj", "--time-limit", "0.001"], arguments].concat());
         assert!(run.stderr.starts_with("error: cannot write "), "{run:?}");
     }
-    assert!(start.elapsed() < Duration::from_secs(5));
     assert_eq!(folder.names(), ["file", "folder.obj", "in.obj"]);
 }
 
@@ -103,7 +106,6 @@ fn the_time_limit_is_4_and_leaves_nothing() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
     for limit in ["0.01", "0.5"] {
-        let start = Instant::now();
         let arguments = [
             "map",
             "in.obj",
@@ -118,10 +120,13 @@ fn the_time_limit_is_4_and_leaves_nothing() {
         ];
         let run = folder.expect(4, &arguments);
         assert!(run.stderr.starts_with("error: in.obj: stopped"), "{run:?}");
-        assert!(start.elapsed() < Duration::from_secs(10));
         assert_eq!(folder.names(), ["in.obj"]);
     }
 }
+
+/// By then the command has begun, and it works for much longer, however busy the machine is.
+#[cfg(unix)]
+const STARTED: Duration = Duration::from_secs(2);
 
 #[cfg(unix)]
 #[test]
@@ -129,7 +134,7 @@ fn an_interrupt_is_4_and_leaves_nothing() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
     let child = folder.start(&["map", "in.obj", "-o", "a.obj"]);
-    std::thread::sleep(Duration::from_millis(500));
+    std::thread::sleep(STARTED);
     let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.unwrap().success());
     let run = wait(child);

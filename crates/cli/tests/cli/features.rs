@@ -5,7 +5,6 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_testkit as testkit;
 use serde_json::Value;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
 
 /// The features that `check` finds.
 #[track_caller]
@@ -329,23 +328,13 @@ fn maps_refuse_what_checks_refuse() {
     assert_eq!(folder.names(), ["in.obj", "p.txt"]);
 }
 
-/// The folder of the collection of meshes, which need not exist.
-fn collection() -> PathBuf {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from)
-}
-
 #[test]
 fn meshes_of_the_collection_have_their_features_aligned() {
     // Most features released, and the largest tau.
     for (name, released, tau) in
         [("flap", 0, 1.40), ("chipped_torus", 0, 1.38), ("halved_scarf", 19, 2.51)]
     {
-        let mesh = collection().join(name).with_extension("obj");
-        if !mesh.is_file() {
-            println!("skipped: no {}", mesh.display());
-            continue;
-        }
+        let Some(mesh) = testkit::in_collection(&format!("{name}.obj")) else { continue };
         let mesh = mesh.to_str().unwrap();
         let folder = Folder::new();
         let aligned = ["--features", "angle:40", "--align-boundary"];
@@ -369,12 +358,11 @@ fn meshes_of_the_collection_have_their_features_aligned() {
 
 #[test]
 fn the_sharp_file_of_the_collection() {
-    let meshes = collection();
-    let [mesh, sharp] = ["obj", "sharp"].map(|e| meshes.join(format!("bracket_inches_rem.{e}")));
-    if !mesh.is_file() || !sharp.is_file() {
-        println!("skipped: no bracket_inches_rem in {}", meshes.display());
+    let [Some(mesh), Some(sharp)] =
+        ["bracket_inches_rem.obj", "bracket_inches_rem.sharp"].map(testkit::in_collection)
+    else {
         return;
-    }
+    };
     let [mesh, sharp] = [mesh, sharp].map(|path| path.to_str().unwrap().to_owned());
     let sharp = format!("sharp:{sharp}");
     let folder = Folder::new();

@@ -3,7 +3,6 @@
 use crate::harness::{Folder, lines_of};
 use seamstress_testkit as testkit;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
 
 /// A sphere of 320 faces and its map, with field, cones and matchings in files.
 fn folder_with_field() -> Folder {
@@ -125,19 +124,13 @@ fn the_classical_way_is_certified_or_needs_leave_to_flip() {
 /// Fields and angles made by other programs, in the optional collection of meshes.
 #[test]
 fn foreign_fields_and_angles_are_followed() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    let meshes = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
     let folder = Folder::new();
     for (mesh, flag, file, cones) in [
         ("aircraft.obj", "--cones", "aircraft_Th_hat", 41),
         ("lilium.obj", "--field", "lilium.rawfield", 15),
         ("bracket_inches_rem.obj", "--field", "bracket_inches_rem.rosy", 52),
     ] {
-        let [mesh, file] = [mesh, file].map(|name| meshes.join(name));
-        if !mesh.is_file() || !file.is_file() {
-            println!("skipped: no {} or {}", mesh.display(), file.display());
-            continue;
-        }
+        let [Some(mesh), Some(file)] = [mesh, file].map(testkit::in_collection) else { continue };
         let [mesh, file] = [mesh, file].map(|path| path.to_str().unwrap().to_owned());
         let run = folder.expect(0, &["map", &mesh, "-o", "map.obj", flag, &file, "--json"]);
         let report: Value = serde_json::from_str(&run.stdout).unwrap();

@@ -50,6 +50,8 @@ impl Folder {
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_seamstress"));
         command.args(arguments).current_dir(self.0.path());
+        // Help is wrapped to the width of the terminal.
+        command.env_remove("COLUMNS").env_remove("LINES");
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }

@@ -4,6 +4,7 @@
 mod bad_meshes;
 mod check;
 mod consistency;
+mod documents;
 mod extract;
 mod failures;
 mod features;
@@ -14,3 +15,4 @@ mod layout;
 mod map;
 mod quad;
 mod quads;
+mod texts;

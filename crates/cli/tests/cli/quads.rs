@@ -1,8 +1,9 @@
 //! `seamstress layout-quads` and `seamstress quality`.
 
 use crate::harness::{Folder, lines_of};
+use seamstress_testkit as testkit;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The squares of a box of 2 x 1 x 1.
 const BOX: &str = "\
@@ -169,11 +170,5 @@ fn quad_meshes_of_the_collection_are_measured_and_laid_out_exactly() {
 }
 
 fn collection() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/meshes");
-    let folder = std::env::var_os("SEAMSTRESS_MESHES").map_or(beside, PathBuf::from);
-    if !folder.is_dir() {
-        println!("skipped: there is no folder {}", folder.display());
-        return None;
-    }
-    Some(folder)
+    testkit::in_collection("")
 }
