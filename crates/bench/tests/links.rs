@@ -1,5 +1,7 @@
 //! The links of the documentation: every file, heading, function and citation that it names exists.
 
+#![allow(clippy::unwrap_used, reason = "a test, with helpers")]
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

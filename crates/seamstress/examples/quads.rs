@@ -1,5 +1,7 @@
 //! A quad mesh with its creases kept, progress on standard error: `cargo run --release --example quads MESH QUADS.obj`.
 
+#![allow(clippy::print_stderr, reason = "a program that shows its progress")]
+
 use seamstress::{Context, Features, QuadOptions, Surface};
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -110,6 +110,9 @@ impl OptimizeOptions {
     }
 }
 
+/// UVs, and the three of each face.
+type FaceUvs<'a> = (&'a [[f64; 2]], &'a [[u32; 3]]);
+
 /// How a map was optimised.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -175,7 +178,7 @@ impl Surface {
 
     fn optimized(
         &self,
-        start: Option<(&[[f64; 2]], &[[u32; 3]])>,
+        start: Option<FaceUvs<'_>>,
         options: &OptimizeOptions,
     ) -> Result<SeamlessMap<OptimizeReport>, Error> {
         let mut settings = options.to_method(self)?;

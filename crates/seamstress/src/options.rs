@@ -249,13 +249,11 @@ impl IntegerMapOptions {
     }
 
     pub(crate) fn to_quantize(&self) -> quantize::IntegerOptions {
-        let mut options = quantize::IntegerOptions::default();
-        options.size = self.size.to_quantize();
-        options.rounding = match self.rounding {
+        let rounding = match self.rounding {
             GridRounding::Constrained => quantize::IntegerRounding::Constrained,
             GridRounding::Greedy => quantize::IntegerRounding::Greedy,
         };
-        options
+        quantize::IntegerOptions { size: self.size.to_quantize(), rounding, ..Default::default() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The published schemas are those of this version, and real reports and options follow them.
 #![cfg(feature = "schema")]
+#![allow(clippy::unwrap_used, reason = "a test, with helpers")]
 
 use seamstress::{
     CertifyOptions, Features, IntegerMapOptions, MapOptions, OptimizeOptions, PolygonMesh,

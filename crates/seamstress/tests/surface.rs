@@ -1,5 +1,7 @@
 //! What a guest may rely on: surfaces, errors with their elements, contexts, ids of the input.
 
+#![allow(clippy::unwrap_used, reason = "a test, with helpers")]
+
 use seamstress::{
     CancelToken, Context, ErrorCategory, Features, Inspection, MapOptions, QuadOptions, Stage,
     Surface, SurfaceOptions,

@@ -93,7 +93,7 @@ const BAD_QUADS: Metric = Metric {
     value: |report| {
         let kinds = [["inverted"; 2], ["self_intersecting", "crossed"], ["folded", "bent"]];
         let count = |kind: &&str| report.number(&format!("/orientation/{kind}"));
-        kinds.iter().map(|words| words.iter().find_map(|kind| count(&kind))).sum()
+        kinds.iter().map(|words| words.iter().find_map(&count)).sum()
     },
     scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
 };

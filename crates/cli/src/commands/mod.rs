@@ -59,8 +59,8 @@ fn targets<'a>(kind: Kind, paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<
 }
 
 /// The inputs of a run.
-fn inputs<'a>(first: &'a PathBuf, others: impl IntoIterator<Item = &'a Path>) -> Vec<&'a Path> {
-    std::iter::once(first.as_path()).chain(others).collect()
+fn inputs<'a>(first: &'a Path, others: impl IntoIterator<Item = &'a Path>) -> Vec<&'a Path> {
+    std::iter::once(first).chain(others).collect()
 }
 
 /// The measure of a name that the parser has let pass.

@@ -121,7 +121,7 @@ pub enum MapError {
     /// The cones asked for, or those of the field to start from, cannot be had.
     #[error(transparent)]
     Cones(#[from] PrescriptionError),
-    /// Feature edges could not be aligned, and [`MapOptions::strict_features`] asked for all of them.
+    /// Feature edges could not be aligned, and [`MapOptions::strict_features`](super::MapOptions::strict_features) asked for all of them.
     #[error("{} feature edges could not be aligned{}", released.len(), listed(released))]
     Released {
         /// The edges.

@@ -33,7 +33,7 @@ pub struct MapOptions {
     /// cones as they were rounded. None: 0.0006; for quads the share of the surface that four of them have, but at
     /// least 0.0015.
     pub cone_price: Option<f64>,
-    /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`]) rather than a
+    /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`](super::MapError::Released)) rather than a
     /// line in the result.
     pub strict_features: bool,
     /// The finish that lowers tau. None: growing powers of the energy alone, as clean-up is judged by.
