@@ -7,9 +7,10 @@ use crate::polygons::Polygons;
 use crate::report::{Distortion, Measurement, VERSION};
 use seamstress_mesh::soup;
 use seamstress_parametrize::quality::Measure;
+#[cfg(feature = "render")]
+use seamstress_quads::quality::angle_deviations;
 use seamstress_quads::quality::{
-    Angles, EdgeLengths, Orientation, SurfaceDistance, Topology, angle_deviations, measure,
-    surface_distance,
+    Angles, EdgeLengths, Orientation, SurfaceDistance, Topology, measure, surface_distance,
 };
 #[cfg(feature = "render")]
 use seamstress_render::HeatMap;
