@@ -89,10 +89,16 @@ fn fault(page: &Path, label: &str, target: &str) -> Option<String> {
     if !heading.is_empty() && !anchors(&text()).contains(heading) {
         return Some(format!("{target}: no such heading"));
     }
-    let name = label.strip_prefix('`')?.strip_suffix('`')?;
     let is_source = path.extension().is_some_and(|extension| extension == "rs");
-    (is_source && !name.ends_with(".rs") && !has_name(&text(), name))
-        .then(|| format!("{target}: no {name} there"))
+    let text = if is_source { text() } else { return None };
+    let missing = names(label).find(|name| !has_name(&text, name));
+    missing.map(|name| format!("{target}: no {name} there"))
+}
+
+/// The names of functions and types in the text of a link.
+fn names(label: &str) -> impl Iterator<Item = &str> {
+    let code = label.split('`').skip(1).step_by(2);
+    code.filter(|word| word.chars().all(|c| c.is_alphanumeric() || c == '_'))
 }
 
 /// The keys that a page cites, as in `[@levi2021; @smith2015]`.
@@ -145,6 +151,8 @@ fn broken_links_are_found() {
     assert_eq!(fault("a", "b.md").as_deref(), Some("b.md: no such file"));
     assert_eq!(fault("a", "page.md#step-3").as_deref(), Some("page.md#step-3: no such heading"));
     assert_eq!(fault("`roun`", "code.rs").as_deref(), Some("code.rs: no roun there"));
+    assert_eq!(fault("`round`, `cut`", "code.rs").as_deref(), Some("code.rs: no cut there"));
+    assert_eq!(fault("`code.rs`", "code.rs"), None);
     assert_eq!(
         citations("as in [@levi2021; @smith2015] and\n[@liu2008]"),
         ["levi2021", "smith2015", "liu2008"]
