@@ -26,11 +26,11 @@ pub use layout::anisotropy::{Anisotropy, Stretch};
 pub use layout::conic::Solver;
 pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
+#[doc(hidden)]
+pub use map::followed;
 pub use map::{
     Alignment, AlignmentTolerance, SeamlessMap, Tolerance, ToleranceError, Violation, Violations,
 };
-#[doc(hidden)]
-pub use method::followed;
 pub use method::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, MethodError,
     Purpose, Relayout, RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap,

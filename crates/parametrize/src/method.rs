@@ -33,7 +33,6 @@ pub use options::{MapOptions, Purpose};
 pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relayout};
 pub use solution::{ComponentStats, MapSolution, StageStats};
 pub use start::Start;
-pub use whole::followed;
 
 use crate::progress::{Stage, Watch};
 use certify::{ComponentMap, last_certified};

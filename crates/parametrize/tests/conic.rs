@@ -9,25 +9,34 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_parallel::with_threads;
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::layout::conic::{
-    ConicError, ConicMinimum, ConicObjective, ConicOptions, Outcome, Program, Solver,
-    SolverOptions, minimize, solve,
+    ConicError, ConicMinimum, ConicOptions, MaximalMeasure, Outcome, Phase, Program, Renewal,
+    Solver, SolverOptions, interior_point, minimize, solve,
 };
 use seamstress_parametrize::layout::exact::ExactLayout;
-use seamstress_parametrize::layout::polish::{PolishOptions, polish};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::space::LinearSpace;
 use seamstress_parametrize::layout::triangle::Triangle;
 use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_testkit as kit;
 use std::ops::ControlFlow;
-use std::time::Duration;
 
-const MEASURES: [ConicObjective; 4] = [
-    ConicObjective::TauAlternating,
-    ConicObjective::ArapMax,
-    ConicObjective::AsapMax,
-    ConicObjective::DilatationAlternating,
-];
+const MEASURES: [MaximalMeasure; 4] =
+    [MaximalMeasure::Tau, MaximalMeasure::Arap, MaximalMeasure::Asap, MaximalMeasure::Dilatation];
+
+/// Algorithm 1 as printed.
+fn printed(measure: MaximalMeasure) -> Vec<Phase> {
+    vec![Phase::Alternating(measure)]
+}
+
+/// A fused run first.
+fn fast(measure: MaximalMeasure) -> Vec<Phase> {
+    vec![Phase::Fused(measure), Phase::Alternating(measure)]
+}
+
+/// (11), then (12).
+fn fast_dilatation() -> Vec<Phase> {
+    [fast(MaximalMeasure::Asap), fast(MaximalMeasure::Dilatation)].concat()
+}
 
 /// The exact layout of a map that was not polished, and its unknowns.
 fn mapped(soup: &TriangleSoup) -> (ExactLayout, Vec<f64>) {
@@ -47,14 +56,14 @@ fn shapes() -> Vec<TriangleSoup> {
     ]
 }
 
-fn program(layout: &ExactLayout, objective: ConicObjective, y: &[f64]) -> Program {
-    objective.program(layout.problem(), None, &layout.expand(y))
+fn program(layout: &ExactLayout, measure: MaximalMeasure, y: &[f64]) -> Program {
+    measure.program(layout.problem(), &layout.expand(y))
 }
 
-fn minimum(layout: &mut ExactLayout, y: &[f64], objective: ConicObjective) -> ConicMinimum {
+fn minimum(layout: &mut ExactLayout, y: &[f64], phases: &[Phase]) -> ConicMinimum {
     let options = ConicOptions::default();
     let problem = layout.problem_mut();
-    unwatched(|watch| minimize(problem, y.to_vec(), objective, &options, watch)).unwrap()
+    unwatched(|watch| minimize(problem, y.to_vec(), phases, &options, watch)).unwrap()
 }
 
 /// Two triangles of a unit square, every corner free but the first.
@@ -77,19 +86,17 @@ fn solvers() -> impl Iterator<Item = Solver> {
 
 #[test]
 fn a_sheared_square_is_straightened() {
-    for objective in MEASURES.into_iter().chain([ConicObjective::Tau, ConicObjective::Dilatation]) {
+    let methods = MEASURES.into_iter().flat_map(|measure| [printed(measure), fast(measure)]);
+    for phases in methods.chain([fast_dilatation()]) {
         for solver in solvers() {
             let mut problem = square();
             let sheared = vec![0.0, 0.0, 1.3, 0.2, 1.9, 1.4, 0.5, 1.0];
             let options = ConicOptions { solver, ..ConicOptions::default() };
             let found =
-                unwatched(|watch| minimize(&mut problem, sheared, objective, &options, watch))
+                unwatched(|watch| minimize(&mut problem, sheared, &phases, &options, watch))
                     .unwrap();
-            let ideal = match objective {
-                ConicObjective::ArapMax | ConicObjective::AsapMax => 0.0,
-                _ => 1.0,
-            };
-            assert!((found.value - ideal).abs() < 1e-4, "{objective:?} {solver:?} {found:?}");
+            let ideal = if found.injective_by_bound.is_some() { 0.0 } else { 1.0 };
+            assert!((found.value - ideal).abs() < 1e-4, "{phases:?} {solver:?} {found:?}");
         }
     }
 }
@@ -102,7 +109,7 @@ fn two_frames_that_disagree_share_the_error() {
     let mut problem = square();
     let y = vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
     let z = problem.space().expand(&y);
-    let mut program = ConicObjective::ArapMax.program(&problem, None, &z);
+    let mut program = MaximalMeasure::Arap.program(&problem, &z);
     let a = 0.3_f64;
     program.frames[0] *= Complex64::from_polar(1.0, a);
     program.frames[1] *= Complex64::from_polar(1.0, -a);
@@ -125,19 +132,19 @@ fn a_pyramid_opens_to_a_cone_of_three_quarters() {
     let (mut layout, y) = mapped(&TriangleSoup { positions, faces });
     assert_eq!(layout.index.iter().copied().max(), Some(1));
     let stretch = 33.75_f64.to_radians().tan() / 30_f64.to_radians().tan();
-    let tau = minimum(&mut layout, &y, ConicObjective::Tau).value;
+    let tau = minimum(&mut layout, &y, &fast(MaximalMeasure::Tau)).value;
     assert!((tau - stretch.sqrt()).abs() < 1e-5, "{tau}");
-    let dilatation = minimum(&mut layout, &y, ConicObjective::Dilatation).value;
+    let dilatation = minimum(&mut layout, &y, &fast_dilatation()).value;
     assert!((dilatation - stretch).abs() < 1e-4, "{dilatation}");
     if Solver::Clarabel.is_available() {
-        let bisected = minimum(&mut layout, &y, ConicObjective::DilatationBisection).value;
+        let bisected = minimum(&mut layout, &y, &[Phase::Bisection]).value;
         assert!((bisected - stretch).abs() < 2e-3, "{bisected}");
     }
-    let similar = minimum(&mut layout, &y, ConicObjective::AsapMax).value;
+    let similar = minimum(&mut layout, &y, &fast(MaximalMeasure::Asap)).value;
     let expected = (stretch - 1.0).powi(2) / (stretch * stretch + 1.0);
     assert!((similar - expected).abs() < 1e-5, "{similar}");
     // (8) at the best scale of the triangle: s1 - 1 = 1 - s2 times the ratio's weights
-    let rigid = minimum(&mut layout, &y, ConicObjective::ArapMax).value;
+    let rigid = minimum(&mut layout, &y, &fast(MaximalMeasure::Arap)).value;
     assert!((rigid - expected).abs() < 1e-5, "{rigid}");
 }
 
@@ -148,14 +155,13 @@ fn a_single_triangle_has_no_distortion() {
         gradients: [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]],
         weight: 1.0,
     };
-    for objective in MEASURES {
+    for measure in MEASURES {
         let mut problem = problem(3, vec![triangle]);
         let y = vec![0.0, 0.0, 2.0, 0.3, -0.4, 0.7];
-        let options = ConicOptions::default();
-        let found =
-            unwatched(|watch| minimize(&mut problem, y, objective, &options, watch)).unwrap();
+        let (phases, options) = (fast(measure), ConicOptions::default());
+        let found = unwatched(|watch| minimize(&mut problem, y, &phases, &options, watch)).unwrap();
         let ideal = if found.injective_by_bound.is_some() { 0.0 } else { 1.0 };
-        assert!((found.value - ideal).abs() < 1e-5, "{objective:?} {}", found.value);
+        assert!((found.value - ideal).abs() < 1e-5, "{measure:?} {}", found.value);
     }
 }
 
@@ -163,18 +169,18 @@ fn a_single_triangle_has_no_distortion() {
 fn developable_strips_have_no_distortion() {
     // An open cylinder rolls off: the seam closes by a translation.
     let (mut layout, y) = mapped(&kit::cylinder(12, 3));
-    for objective in [ConicObjective::Tau, ConicObjective::TauAlternating] {
-        assert!((minimum(&mut layout, &y, objective).value - 1.0).abs() < 1e-5);
+    for phases in [fast(MaximalMeasure::Tau), printed(MaximalMeasure::Tau)] {
+        assert!((minimum(&mut layout, &y, &phases).value - 1.0).abs() < 1e-5);
     }
-    assert!(minimum(&mut layout, &y, ConicObjective::ArapMax).value < 1e-5);
+    assert!(minimum(&mut layout, &y, &fast(MaximalMeasure::Arap)).value < 1e-5);
 }
 
 /// Own solver and Clarabel on every program of a map's own frames and scales.
 #[cfg(feature = "clarabel")]
 fn assert_agreement(soup: &TriangleSoup) {
     let (mut layout, y) = mapped(soup);
-    for objective in MEASURES {
-        let program = program(&layout, objective, &y);
+    for measure in MEASURES {
+        let program = program(&layout, measure, &y);
         let mut by = |solver, tolerance| {
             let problem = layout.problem_mut();
             let options = SolverOptions { tolerance, ..SolverOptions::default() };
@@ -186,7 +192,7 @@ fn assert_agreement(soup: &TriangleSoup) {
         // A layout without distortion has the optimum 0.
         let difference = (own.objective - other.objective).abs();
         let allowed = 1e-4 * other.objective + 1e-8;
-        assert!(difference < allowed, "{objective:?}: {} {}", own.objective, other.objective);
+        assert!(difference < allowed, "{measure:?}: {} {}", own.objective, other.objective);
     }
 }
 
@@ -213,18 +219,52 @@ fn accelerated_methods_are_no_worse_than_those_printed() {
     for soup in shapes() {
         let (mut layout, y) = mapped(&soup);
         for (fast, printed) in [
-            (ConicObjective::Tau, ConicObjective::TauAlternating),
-            (ConicObjective::Dilatation, ConicObjective::DilatationAlternating),
-            (ConicObjective::Dilatation, ConicObjective::DilatationBisection),
+            (fast(MaximalMeasure::Tau), printed(MaximalMeasure::Tau)),
+            (fast_dilatation(), printed(MaximalMeasure::Dilatation)),
+            (fast_dilatation(), vec![Phase::Bisection]),
         ] {
-            if printed == ConicObjective::DilatationBisection && !Solver::Clarabel.is_available() {
+            if printed == [Phase::Bisection] && !Solver::Clarabel.is_available() {
                 continue;
             }
-            let (a, b) = (minimum(&mut layout, &y, fast), minimum(&mut layout, &y, printed));
+            let (a, b) = (minimum(&mut layout, &y, &fast), minimum(&mut layout, &y, &printed));
             assert!(a.value <= b.value * (1.0 + 2e-2), "{fast:?} {} {}", a.value, b.value);
             assert!(a.value <= a.value_before && b.value <= b.value_before);
         }
     }
+}
+
+/// Goes on from a layout for many rounds, whatever they gain.
+fn longer(layout: &mut ExactLayout, y: &[f64], measure: MaximalMeasure) -> ConicMinimum {
+    let options = ConicOptions { max_rounds: 60, tolerance: 0.0, ..ConicOptions::default() };
+    let (problem, phases) = (layout.problem_mut(), printed(measure));
+    unwatched(|watch| minimize(problem, y.to_vec(), &phases, &options, watch)).unwrap()
+}
+
+#[test]
+fn what_counts_as_settled_hardly_falls_any_more() {
+    let tolerance = ConicOptions::default().tolerance;
+    for soup in shapes() {
+        let (mut layout, y) = mapped(&soup);
+        for measure in MEASURES {
+            for phases in [fast(measure), printed(measure)] {
+                let found = minimum(&mut layout, &y, &phases);
+                assert!(found.remaining.unwrap() <= tolerance, "{phases:?} {found:?}");
+                let longer = longer(&mut layout, &found.y, measure).value;
+                let left = found.value - longer;
+                assert!(left <= tolerance * longer + 1e-9, "{phases:?}: {} {longer}", found.value);
+            }
+        }
+    }
+}
+
+#[test]
+fn rounds_that_run_out_do_not_count_as_settled() {
+    let (mut layout, y) = mapped(&kit::icosphere(2));
+    let options = ConicOptions { max_rounds: 2, ..ConicOptions::default() };
+    let phases = printed(MaximalMeasure::Asap);
+    let problem = layout.problem_mut();
+    let found = unwatched(|watch| minimize(problem, y, &phases, &options, watch)).unwrap();
+    assert!(found.outcome == Outcome::Solved && found.remaining.unwrap() > options.tolerance);
 }
 
 #[test]
@@ -232,13 +272,13 @@ fn minima_are_free_of_flips_and_of_their_own_measure() {
     for soup in shapes() {
         let (mesh, _) = surface(&soup);
         let (mut layout, y) = mapped(&soup);
-        for objective in MEASURES {
-            let found = minimum(&mut layout, &y, objective);
+        for measure in MEASURES {
+            let found = minimum(&mut layout, &y, &fast(measure));
             assert!(layout.defects(&Sectors::unaligned(&mesh), &found.y).none());
             let z = layout.expand(&found.y);
-            let value = objective.value(layout.problem(), None, &z);
+            let value = measure.of_layout(layout.problem(), &z);
             assert!((value - found.value).abs() < 1e-9 * found.value.max(1.0));
-            let bounded = matches!(objective, ConicObjective::ArapMax | ConicObjective::AsapMax);
+            let bounded = matches!(measure, MaximalMeasure::Arap | MaximalMeasure::Asap);
             assert_eq!(found.injective_by_bound, bounded.then_some(found.value < 1.0));
         }
     }
@@ -248,9 +288,9 @@ fn minima_are_free_of_flips_and_of_their_own_measure() {
 fn size_and_pose_do_not_matter() {
     let (mut layout, y) = mapped(&kit::bumpy(&kit::icosphere(2), 0.1, 3));
     let doubled: Vec<f64> = y.iter().map(|y| 2.0 * y).collect();
-    for objective in [ConicObjective::Tau, ConicObjective::AsapMax, ConicObjective::Dilatation] {
-        let (a, b) =
-            (minimum(&mut layout, &y, objective), minimum(&mut layout, &doubled, objective));
+    let (tau, asap) = (fast(MaximalMeasure::Tau), fast(MaximalMeasure::Asap));
+    for phases in [tau, asap, fast_dilatation()] {
+        let [a, b] = [&y, &doubled].map(|y| minimum(&mut layout, y, &phases));
         assert!((a.value / b.value - 1.0).abs() < 1e-6);
     }
     // A quarter turn of the whole layout of a disk, about the pinned wedge.
@@ -259,44 +299,20 @@ fn size_and_pose_do_not_matter() {
     let turned: Vec<f64> = still.chunks(2).flat_map(|z| [-z[1], z[0]]).collect();
     let options = ConicOptions { max_rounds: 1, ..ConicOptions::default() };
     let mut value = |y: Vec<f64>| {
-        let objective = ConicObjective::TauAlternating;
-        unwatched(|watch| minimize(&mut problem, y, objective, &options, watch)).unwrap().value
+        let phases = printed(MaximalMeasure::Tau);
+        unwatched(|watch| minimize(&mut problem, y, &phases, &options, watch)).unwrap().value
     };
     assert!((value(still) - value(turned)).abs() < 1e-9);
 }
 
 #[test]
-fn anisotropic_frames_shape_the_layout() {
-    let mut problem = square();
-    let frame = [[2.0, 0.0], [0.0, 0.5]];
-    let y = vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
-    let options = ConicOptions { anisotropy: Some(vec![frame; 2]), ..ConicOptions::default() };
-    for objective in [ConicObjective::ArapMax, ConicObjective::Tau] {
-        let found =
-            unwatched(|watch| minimize(&mut problem, y.clone(), objective, &options, watch))
-                .unwrap();
-        let j = problem.triangles()[0].jacobian(&problem.space().expand(&found.y));
-        let (s1, s2) = j.singular_values();
-        // A R for a rotation R: the stretches of A.
-        assert!((s1 / s2 - 4.0).abs() < 1e-3, "{s1} {s2}");
-    }
-}
-
-#[test]
 fn failures_are_typed() {
     let (mut layout, y) = mapped(&kit::saddle(6));
-    let tau = program(&layout, ConicObjective::Tau, &y);
+    let tau = program(&layout, MaximalMeasure::Tau, &y);
     let limited = SolverOptions { max_iterations: 3, ..SolverOptions::default() };
     let problem = layout.problem_mut();
     let short = unwatched(|watch| {
-        seamstress_parametrize::layout::conic::interior_point::solve(
-            problem,
-            &tau,
-            &y,
-            seamstress_parametrize::layout::conic::interior_point::Renewal::Never,
-            &limited,
-            watch,
-        )
+        interior_point::solve(problem, &tau, &y, Renewal::Never, &limited, watch)
     })
     .unwrap();
     assert_eq!(short.outcome, Outcome::IterationLimit);
@@ -326,18 +342,10 @@ fn failures_are_typed() {
 
     let flipped: Vec<f64> =
         y.iter().enumerate().map(|(k, y)| if k % 2 == 0 { -y } else { *y }).collect();
-    let settings = ConicOptions::default();
-    let refused = unwatched(|watch| {
-        minimize(layout.problem_mut(), flipped, ConicObjective::Tau, &settings, watch)
-    });
-    assert!(matches!(refused, Err(ConicError::FlippedStart { triangle: 0 })));
-    let singular = ConicOptions {
-        anisotropy: Some(vec![[[1.0, 1.0], [1.0, 1.0]]; 1]),
-        ..ConicOptions::default()
-    };
+    let (phases, settings) = (fast(MaximalMeasure::Tau), ConicOptions::default());
     let refused =
-        unwatched(|watch| minimize(layout.problem_mut(), y, ConicObjective::Tau, &singular, watch));
-    assert!(matches!(refused, Err(ConicError::BadFrame { triangle: 0 })));
+        unwatched(|watch| minimize(layout.problem_mut(), flipped, &phases, &settings, watch));
+    assert!(matches!(refused, Err(ConicError::FlippedStart { triangle: 0 })));
 }
 
 /// What asks for the reference solver is refused by name where it is not part of the build.
@@ -346,16 +354,16 @@ fn failures_are_typed() {
 fn a_missing_reference_solver_is_a_typed_outcome() {
     let y = vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
     let by_clarabel = ConicOptions { solver: Solver::Clarabel, ..ConicOptions::default() };
-    for (objective, options) in [
-        (ConicObjective::Tau, &by_clarabel),
-        (ConicObjective::DilatationBisection, &ConicOptions::default()),
+    for (phases, options) in [
+        (fast(MaximalMeasure::Tau), &by_clarabel),
+        (vec![Phase::Bisection], &ConicOptions::default()),
     ] {
         let refused =
-            unwatched(|watch| minimize(&mut square(), y.clone(), objective, options, watch));
-        assert!(matches!(refused, Err(ConicError::NoReferenceSolver)), "{objective:?}");
+            unwatched(|watch| minimize(&mut square(), y.clone(), &phases, options, watch));
+        assert!(matches!(refused, Err(ConicError::NoReferenceSolver)), "{phases:?}");
     }
     let mut problem = square();
-    let program = ConicObjective::Tau.program(&problem, None, &problem.space().expand(&y));
+    let program = MaximalMeasure::Tau.program(&problem, &problem.space().expand(&y));
     let options = SolverOptions::default();
     let found =
         unwatched(|watch| solve(&mut problem, &program, &y, Solver::Clarabel, &options, watch));
@@ -363,42 +371,11 @@ fn a_missing_reference_solver_is_a_typed_outcome() {
 }
 
 #[test]
-fn the_polish_keeps_to_its_budget_and_to_its_time() {
-    for soup in shapes() {
-        let (mesh, _) = surface(&soup);
-        let (mut layout, y) = mapped(&soup);
-        let settle = seamstress_parametrize::layout::newton::NewtonOptions {
-            max_iterations: 40,
-            tolerance: 1e-6,
-        };
-        let energy = seamstress_parametrize::layout::energy::SymmetricDirichlet;
-        let relaxed =
-            unwatched(|watch| layout.minimize(y.clone(), &energy, &settle, watch)).unwrap().y;
-        let (least, before) = (layout.distortion(&relaxed).0, layout.distortion(&y).1);
-        for max_energy_rise in [0.0005, 0.003, 0.02] {
-            let options = PolishOptions { max_energy_rise, time_limit: None };
-            let found =
-                unwatched(|watch| polish(&mut layout, &relaxed, &y, &options, watch)).unwrap();
-            if let Some(found) = found {
-                let (energy, tau) = layout.distortion(&found.y);
-                assert!(energy <= least * (1.0 + max_energy_rise) && tau < before);
-                assert!(layout.defects(&Sectors::unaligned(&mesh), &found.y).none());
-            } else {
-                assert!(max_energy_rise < 0.02, "a generous budget gains something");
-            }
-        }
-        let hurried =
-            PolishOptions { time_limit: Some(Duration::ZERO), ..PolishOptions::default() };
-        let none = unwatched(|watch| polish(&mut layout, &relaxed, &y, &hurried, watch)).unwrap();
-        assert!(none.is_none());
-    }
-}
-
-#[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     let (mut layout, y) = mapped(&kit::icosphere(3));
     let mut on = |threads: usize| {
-        with_threads(threads, || minimum(&mut layout, &y, ConicObjective::Tau).y).unwrap()
+        let phases = fast(MaximalMeasure::Tau);
+        with_threads(threads, || minimum(&mut layout, &y, &phases).y).unwrap()
     };
     assert_eq!(on(1), on(3));
 }

@@ -52,12 +52,8 @@ fn enumerated(soup: &TriangleSoup) -> (f64, Vec<i32>) {
         }
         let layout = ExactLayout::new(&sectors, &metric, &matched).unwrap();
         let turned = frames.iter().zip(layout.gauge.iter()).map(|(&r, &k)| turn(r, k));
-        let program = Program {
-            kind: ProgramKind::Stretch,
-            frames: turned.collect(),
-            scales: None,
-            left: None,
-        };
+        let program =
+            Program { kind: ProgramKind::Stretch, frames: turned.collect(), scales: None };
         let options = SolverOptions { tolerance: 1e-8, max_iterations: 100 };
         let solved =
             unwatched(|watch| reference::solve(layout.problem(), &program, &options, watch));

@@ -178,3 +178,103 @@ fn minimisers_that_flip_are_held_back() {
     assert!(matches!(stats.ending, Ending::Guarded { flips: 1.. }), "{stats:?}");
     assert!(stats.after < stats.before && result.distortion.flipped == 0);
 }
+
+/// Laid out with the dilatation bounded.
+fn bounded(soup: &TriangleSoup, map: &SeamlessMap, bound: f64) -> Result<Relayout, MapError> {
+    let mut go_on = |_| ControlFlow::Continue(());
+    let mut options = RelayoutOptions::new(Objective::Dilatation);
+    options.settings.dilatation_bound = Some(bound);
+    relayout(&mesh_of(soup), &soup.positions, map, &options, &mut go_on)
+}
+
+#[test]
+fn a_bound_on_the_dilatation_is_kept_at_the_least_energy() {
+    for soup in shapes() {
+        let map = start(&soup);
+        let smallest =
+            figure(&soup, &laid_out(&soup, &map, Objective::Dilatation).map, Measure::Dilatation);
+        let energy_of = |map: &SeamlessMap| figure(&soup, map, Measure::SymmetricDirichlet);
+        let unbounded = energy_of(&laid_out(&soup, &map, Objective::SymmetricDirichlet).map);
+        let mut last = f64::INFINITY;
+        for factor in [1.0 + 1e-3, 1.05, 1.2, 10.0] {
+            let bound = factor * smallest;
+            let result = bounded(&soup, &map, bound).unwrap();
+            let dilatation = figure(&soup, &result.map, Measure::Dilatation);
+            assert!(dilatation <= bound * (1.0 + 2e-6), "{dilatation} {bound}");
+            let cones: Vec<_> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
+            let found = checker::check(&soup.faces, result.map.corner_uvs()).unwrap();
+            assert_eq!(found.cones, cones);
+            for stats in &result.components {
+                assert!(stats.dilatation.is_some_and(|k| k <= bound * (1.0 + 2e-6)), "{stats:?}");
+            }
+            // The looser the bound, the less energy; without one that matters, the minimum.
+            let energy = energy_of(&result.map);
+            assert!(energy <= last * (1.0 + 1e-4), "{factor}: {energy} {last}");
+            last = energy;
+        }
+        assert!((last / unbounded - 1.0).abs() < 1e-4, "{last} {unbounded}");
+    }
+}
+
+#[test]
+fn a_bound_that_no_layout_keeps_is_reported_with_the_smallest_found() {
+    let soup = kit::bumpy(&kit::icosphere(2), 0.15, 4);
+    let error = bounded(&soup, &start(&soup), 1.001).unwrap_err();
+    assert!(error.is_infeasible());
+    let text = error.to_string();
+    assert!(text.contains("at most 1.001 was found; the smallest one found has 1."), "{text}");
+    // What is no bound, or not of the objective, is refused.
+    let mut go_on = |_| ControlFlow::Continue(());
+    let (mesh, map) = (mesh_of(&soup), start(&soup));
+    for (objective, bound, reason) in [
+        (Objective::Dilatation, 0.5, "cannot be bounded by 0.5"),
+        (Objective::Dilatation, f64::NAN, "cannot be bounded by NaN"),
+        (Objective::Tau, 2.0, "not with tau"),
+    ] {
+        let mut options = RelayoutOptions::new(objective);
+        options.settings.dilatation_bound = Some(bound);
+        let error = relayout(&mesh, &soup.positions, &map, &options, &mut go_on).unwrap_err();
+        assert!(!error.is_infeasible() && error.to_string().contains(reason), "{error}");
+    }
+}
+
+#[test]
+fn a_developable_patch_has_a_layout_without_dilatation() {
+    let mut soup = kit::disk_grid(8, 4);
+    for p in &mut soup.positions {
+        let angle = p[0];
+        *p = [angle.sin(), p[1], angle.cos()];
+    }
+    let mesh = mesh_of(&soup);
+    let mut go_on = |_| ControlFlow::Continue(());
+    for objective in
+        [Objective::Dilatation, Objective::DilatationAlternating, Objective::DilatationBisection]
+    {
+        let mut options = RelayoutOptions::new(objective);
+        options.settings.dilatation_bound = Some(1.0);
+        let result = lay_out_disk(&mesh, &soup.positions, &options, &mut go_on).unwrap();
+        let dilatation = result.components[0].dilatation.unwrap();
+        assert!((1.0..1.0 + 2e-5).contains(&dilatation), "{objective}: {dilatation}");
+    }
+}
+
+#[test]
+fn conic_objectives_converge_or_say_that_they_stopped() {
+    let soup = kit::bumpy(&kit::icosphere(2), 0.15, 4);
+    let (mesh, map) = (mesh_of(&soup), start(&soup));
+    let mut go_on = |_| ControlFlow::Continue(());
+    for objective in
+        [Objective::TauAlternating, Objective::AsapMax, Objective::DilatationAlternating]
+    {
+        let mut options = RelayoutOptions::new(objective);
+        for (max_rounds, ending) in [(60, Ending::Converged), (1, Ending::Stopped)] {
+            options.settings.conic.max_rounds = max_rounds;
+            let result = relayout(&mesh, &soup.positions, &map, &options, &mut go_on).unwrap();
+            let stats = result.components[0];
+            assert_eq!(stats.ending, ending, "{objective}");
+            let remaining = stats.conic.unwrap().remaining.unwrap();
+            let is_settled = remaining <= options.settings.conic.tolerance;
+            assert_eq!(is_settled, ending == Ending::Converged, "{objective}: {remaining}");
+        }
+    }
+}

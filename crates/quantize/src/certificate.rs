@@ -1,5 +1,6 @@
 //! The certificate of an integer map.
 
+use super::area::area;
 use super::isolines::turning_points;
 use num_complex::Complex64;
 use seamstress_mesh::features::EdgeSet;
@@ -56,7 +57,8 @@ pub struct IntegerCertificate {
     pub integral_error: f64,
     /// The largest coordinate of a translation.
     pub largest_translation: f64,
-    /// Area in the plane, grid units: the number of quads of a closed mesh.
+    /// Area in the plane, grid units: the number of quads, exactly, of a mesh that is closed or whose boundary lies on
+    /// grid lines.
     pub area: f64,
 }
 
@@ -121,7 +123,7 @@ impl IntegerCertificate {
             integral_corners: corners.len(),
             integral_error: check.error,
             largest_translation,
-            area: check.area(),
+            area: area(mesh.faces().map(|f| f.halfedges().map(|h| check.at(h)))),
         })
     }
 }
@@ -274,12 +276,6 @@ impl Check<'_> {
                 break;
             }
         }
-    }
-
-    fn area(&self) -> f64 {
-        let doubled = |[a, b, c]: [Complex64; 3]| ((b - a).conj() * (c - a)).im;
-        let areas = self.mesh.faces().map(|f| doubled(f.halfedges().map(|h| self.at(h))));
-        areas.sum::<f64>() / 2.0
     }
 }
 

@@ -12,6 +12,7 @@
 //! 5. [`snap`]: doubles that fit to the last bit;
 //! 6. [`IntegerMap::certify`], the only door to an integer map.
 
+mod area;
 pub mod barrier;
 mod certificate;
 mod component;

@@ -42,7 +42,7 @@ pub struct IntegerSolution {
 }
 
 impl IntegerSolution {
-    /// Area in the plane, grid units: the number of quads of a closed mesh.
+    /// Area in the plane, grid units: the number of quads, exactly, unless a boundary cuts cells.
     pub fn quads(&self) -> f64 {
         self.map.certificate().area
     }

@@ -8,8 +8,9 @@ use seamstress_mesh::features::{
 };
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
 use seamstress_parametrize::{
-    Alignment, AlignmentTolerance, ReleasedFeature, SeamlessMap, Violations,
+    Alignment, AlignmentTolerance, ReleaseReason, ReleasedFeature, SeamlessMap, Violations,
 };
+use seamstress_quads::Extraction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -316,6 +317,20 @@ impl FeatureCurves {
     /// Their numbers.
     pub fn report(&self) -> &FeatureReport {
         &self.report
+    }
+
+    /// Those that quads follow, by their ends; the report names the others, dropped for that reason.
+    pub(crate) fn followed_by(&self, extraction: &Extraction) -> (Vec<[u32; 2]>, FeatureReport) {
+        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let on_lines: BTreeSet<[u32; 2]> =
+            extraction.edges_on_grid_lines.iter().copied().map(ordered).collect();
+        let is_followed = |pair: &[u32; 2]| on_lines.contains(&ordered(*pair));
+        let (kept, others): (Vec<_>, Vec<_>) = self.pairs.iter().copied().partition(is_followed);
+        let dropped = |vertices| ReleasedFeature::new(vertices, ReleaseReason::NotInMap);
+        let mut report = self.report.clone();
+        report.kept = Some(kept.len());
+        report.dropped = Some(others.into_iter().map(dropped).collect());
+        (kept, report)
     }
 }
 

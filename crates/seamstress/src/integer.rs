@@ -59,7 +59,9 @@ pub struct IntegerMapReport {
 pub struct GridReport {
     /// As asked for.
     pub requested: GridSize,
-    /// Area of the map in grid units: the number of quads of a closed surface.
+    /// Area of the map in grid units: the number of quads, a whole number unless a boundary cuts cells.
+    #[serde(serialize_with = "whole_without_point")]
+    #[cfg_attr(feature = "schema", schemars(with = "f64"))]
     pub quads: f64,
     /// Edge length of a cell, mesh units, before any component needed a finer one.
     pub edge_length: f64,
@@ -89,12 +91,25 @@ impl GridReport {
             GridSize::EdgeLength(length) => format!("edge length {}", rounded(length)),
             GridSize::Scale(scale) => format!("scale {}", rounded(scale)),
         };
-        let mut text = format!("{:.1} quads, asked for {asked}", self.quads);
+        let quads = match self.quads {
+            whole if whole.fract() == 0.0 => whole.to_string(),
+            cut => format!("{cut:.1}"),
+        };
+        let mut text = format!("{quads} quads, asked for {asked}");
         if self.refinements > 0 {
             let times = counted(self.refinements, "time");
             text += &format!("; {times} finer where cones are close");
         }
         text
+    }
+}
+
+fn whole_without_point<S: serde::Serializer>(x: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match *x {
+        whole if whole.fract() == 0.0 && (0.0..u32::MAX.into()).contains(&whole) => {
+            serializer.serialize_u32(whole as u32)
+        }
+        other => serializer.serialize_f64(other),
     }
 }
 
@@ -170,7 +185,7 @@ impl Surface {
             return Ok(None);
         }
         let asked = self.features(features)?;
-        let (_, dropped) = method::followed(self.mesh(), map, asked.edges.clone())
+        let (_, dropped) = method::followed(self.mesh(), map, &asked.edges)
             .map_err(|violations| self.not_a_map(&violations))?;
         let aligned = AlignedFeatures::certify(self.mesh(), asked, map, &dropped);
         aligned.map(Some).map_err(|violations| self.not_a_map(&violations))

@@ -23,6 +23,11 @@ pub struct OptimizeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_parser = crate::options::parse::objective()))]
     pub objective: Objective,
 
+    /// With an objective of the dilatation: keep it at most K, 1 or more, and minimise the mean symmetric
+    /// Dirichlet energy under that bound; it fails if no such map is found
+    #[cfg_attr(feature = "clap", arg(long, value_name = "K"))]
+    pub bound: Option<f64>,
+
     /// Solver of the conic programs of `arap-max`, `tau`, `asap-max` and `dilatation`; where our own
     /// fails, Clarabel takes over
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "NAME", default_value_t = ConicSolver::Own))]
@@ -65,6 +70,7 @@ impl Default for OptimizeOptions {
     fn default() -> Self {
         Self {
             objective: Objective::SymmetricDirichlet,
+            bound: None,
             solver: ConicSolver::Own,
             features: Features::none(),
             features_strict: false,
@@ -81,6 +87,12 @@ impl OptimizeOptions {
         self
     }
 
+    /// Sets a bound on the dilatation, which has to be the objective.
+    pub fn bound(mut self, bound: f64) -> Self {
+        self.bound = Some(bound);
+        self
+    }
+
     /// Sets the features to keep.
     pub fn features(mut self, features: Features) -> Self {
         self.features = features;
@@ -93,9 +105,27 @@ impl OptimizeOptions {
         options
     }
 
+    fn validate_bound(&self) -> Result<(), Error> {
+        match self.bound {
+            Some(bound) if !(bound >= 1.0 && bound.is_finite()) => {
+                let text = format!("bound is {bound}; no map has a dilatation below 1");
+                Err(Error::options(text).with_hint("give a finite number, 1 or larger"))
+            }
+            Some(_) if !self.objective.is_of_dilatation() => {
+                let text = format!("bound is one on the dilatation, not on {}", self.objective);
+                let hint = "minimise `dilatation`, `dilatation-alternating` or \
+                            `dilatation-bisection` with it";
+                Err(Error::options(text).with_hint(hint))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn to_method(&self, surface: &Surface) -> Result<RelayoutOptions, Error> {
+        self.validate_bound()?;
         let mut options = RelayoutOptions::new(self.objective);
         options.tolerance = self.certify().seam_tolerance()?;
+        options.settings.dilatation_bound = self.bound;
         options.strict_features = self.features_strict;
         options.settings.conic.solver = match self.solver {
             ConicSolver::Own => Solver::Own,
@@ -149,10 +179,11 @@ impl Described for OptimizeReport {
 
 impl Surface {
     /// Minimises an objective over all maps with the matchings and cones of a seamless map; its seams may come to lie
-    /// elsewhere. The result is certified and never worse than the start.
+    /// elsewhere. The result is certified and never worse than the start, unless that does not keep the bound asked for.
     ///
     /// # Errors
-    /// [`ErrorKind::NotAMap`] if it is no seamless map to start from, and those of [`Surface::parametrize`].
+    /// [`ErrorKind::NotAMap`] if it is no seamless map to start from, [`ErrorKind::NoMap`] if none is found that keeps
+    /// the bound, and those of [`Surface::parametrize`].
     pub fn optimize(
         &self,
         uvs: &[[f64; 2]],
@@ -198,6 +229,8 @@ impl Surface {
             let solution = made.map_err(|cause| match cause {
                 cause if cause.is_not_a_disk() => Error::options(cause.to_string())
                     .with_hint("give a seamless map to start from, as made by `parametrize`"),
+                cause if cause.is_infeasible() => Error::new(ErrorKind::NoMap, cause.to_string())
+                    .with_hint("allow a larger `bound`, or start from another map"),
                 cause => self.no_map(&cause),
             })?;
             let certify =

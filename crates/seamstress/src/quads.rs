@@ -320,7 +320,7 @@ impl Surface {
     }
 
     /// Extracts the quads of an integer-grid map of this surface, made by any program, in grid units. Vertices on
-    /// the features of `shaping` stay on them when quads are untangled and smoothed.
+    /// features stay on them when quads are untangled and smoothed; features that the quads do not follow are dropped.
     ///
     /// # Errors
     /// [`ErrorKind::NoQuads`] where it is no integer-grid map, and [`ErrorKind::NotAManifold`].
@@ -347,9 +347,10 @@ impl Surface {
                 );
             }
             let map = ExtractedMap::new(&extraction);
+            let (kept, feature_report) = asked.followed_by(&extraction);
             // What folds have left holes in is no surface to shape.
             let shaped = match connectivity.is_ok() && extraction.folds.is_none() {
-                true => Some(self.shape(&mut extraction, &options.shape, asked.edges())?),
+                true => Some(self.shape(&mut extraction, &options.shape, &kept)?),
                 false => None,
             };
             let quads = QuadReport::new(&extraction, connectivity.as_ref());
@@ -363,7 +364,7 @@ impl Surface {
                 integer_certificate: None,
                 components: None,
                 map,
-                features: (!features.is_none()).then(|| asked.report().clone()),
+                features: (!features.is_none()).then_some(feature_report),
                 manifold_refinements: 0,
                 quads,
                 mended: shaped.map(|shaped| shaped.0),

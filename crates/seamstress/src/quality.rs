@@ -5,12 +5,11 @@ use crate::error::{Error, ErrorKind};
 use crate::pictures::draw_polygons;
 use crate::polygons::Polygons;
 use crate::report::{Distortion, Measurement, VERSION};
-use seamstress_mesh::soup;
 use seamstress_parametrize::quality::Measure;
 #[cfg(feature = "render")]
 use seamstress_quads::quality::angle_deviations;
 use seamstress_quads::quality::{
-    Angles, EdgeLengths, Orientation, SurfaceDistance, Topology, measure, surface_distance,
+    Angles, ComparisonError, EdgeLengths, Orientation, SurfaceDistance, Topology, compare, measure,
 };
 #[cfg(feature = "render")]
 use seamstress_render::HeatMap;
@@ -162,22 +161,22 @@ impl PolygonMesh {
     }
 
     fn compare(&self, source: &crate::Inspection, samples: u32) -> Result<SourceReport, Error> {
-        let triangles =
-            soup::triangulate(&self.positions, self.polygons.iter()).map_err(|faults| {
-                let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
-                self.refused(&faults.join("; "))
-            })?;
-        let soup = &source.parts.soup;
-        let surface = (self.positions.as_slice(), triangles.faces.as_slice());
-        let reference = (soup.positions.as_slice(), soup.faces.as_slice());
-        let bad = |text: String| {
-            Error::new(ErrorKind::NotASurface, text).of(source.parts.input.as_deref())
+        let parts = &source.parts;
+        // Repairs change polygons to triangles with other vertices.
+        let reference: Vec<&[u32]> = match parts.vertex_origin {
+            None => parts.polygons.iter().collect(),
+            Some(_) => parts.soup.faces.iter().map(<[u32; 3]>::as_slice).collect(),
         };
-        let distance = surface_distance(surface, reference, samples as usize)
-            .map_err(|cause| bad(cause.to_string()))?;
-        let orientation = Orientation::new(&self.positions, self.polygons.iter(), reference)
-            .map_err(|cause| bad(cause.to_string()))?;
-        Ok(SourceReport { source: source.parts.input.clone(), distance, orientation })
+        let mesh = (self.positions.as_slice(), self.polygons.iter());
+        let reference = (parts.soup.positions.as_slice(), reference.into_iter());
+        let compared = compare(mesh, reference, samples as usize).map_err(|cause| match cause {
+            ComparisonError::BadMesh(_) => self.refused(&cause.to_string()),
+            cause => {
+                Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
+            }
+        })?;
+        let (distance, orientation) = (compared.distance, compared.orientation);
+        Ok(SourceReport { source: parts.input.clone(), distance, orientation })
     }
 
     /// Draws it from both sides in the colours of a metric, with irregular vertices and a legend, as a PNG file.

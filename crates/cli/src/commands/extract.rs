@@ -44,7 +44,7 @@ pub(crate) struct ExtractArgs {
     ///
     /// They are those that the map aligns, from the sources of `quad`: angle:DEGREES, boundary, lines,
     /// edges:A-B,..., pairs:FILE or sharp:FILE. Where the map has a vertex of the quads on one, that slides
-    /// along it when quads are untangled or smoothed.
+    /// along it when quads are untangled or smoothed. Those that the quads do not follow are reported as dropped.
     #[arg(long, value_name = "SOURCE")]
     features: Vec<FeatureSource>,
 
@@ -110,6 +110,7 @@ impl Command for ExtractArgs {
         let report = quads.report();
         let mut rows = summary::surface_rows(&report.input);
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
+        rows.extend(report.features.iter().flat_map(summary::aligned_rows));
         rows.extend(summary::quad_rows(report));
         rows
     }

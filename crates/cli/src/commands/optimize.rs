@@ -9,8 +9,8 @@ use crate::summary;
 use crate::text::{counted, rounded, row};
 use seamstress::lab::read_stretches;
 use seamstress::{
-    AtomicFile, ConicStats, Error, MapFile, OptimizeOptions, OptimizeReport, SeamlessMap,
-    SurfaceOptions, TextureOptions,
+    AtomicFile, ConicStats, Error, MapFile, Objective, OptimizeOptions, OptimizeReport,
+    SeamlessMap, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -22,7 +22,8 @@ Examples:
   seamstress lab optimize bunny.ply bunny.obj --objective asap -o conformal.obj --pictures conformal
   seamstress lab optimize mask.obj --objective symmetric-dirichlet -o flat.obj
   seamstress lab optimize bunny.ply bunny.obj --objective arap --anisotropy stretch.txt -o long.obj
-  seamstress lab optimize part.obj part_map.obj --features angle:40 --objective tau -o even.obj";
+  seamstress lab optimize part.obj part_map.obj --features angle:40 --objective tau -o even.obj
+  seamstress lab optimize bunny.ply bunny.obj --objective dilatation --bound 1.5 -o bounded.obj";
 
 /// Lay a map out anew, for the distortion you choose
 ///
@@ -135,14 +136,17 @@ impl Command for OptimizeArgs {
                 1 => String::new(),
                 _ => format!("component {k}: "),
             };
-            let text = format!(
-                "{whose}{} {} -> {} ({})",
-                self.options.objective,
-                rounded(stats.before),
-                rounded(stats.after),
-                stats.ending
-            );
+            let what = match self.options.bound {
+                Some(_) => Objective::SymmetricDirichlet,
+                None => self.options.objective,
+            };
+            let (before, after) = (rounded(stats.before), rounded(stats.after));
+            let text = format!("{whose}{what} {before} -> {after} ({})", stats.ending);
             rows.push(row("objective", &text));
+            if let (Some(bound), Some(dilatation)) = (self.options.bound, stats.dilatation) {
+                let text = format!("{whose}dilatation {}, at most {bound}", rounded(dilatation));
+                rows.push(row("bound", &text));
+            }
             rows.extend(stats.conic.map(conic_row));
         }
         rows.extend(summary::distortion_rows(&report.distortion));
@@ -163,6 +167,9 @@ fn conic_row(stats: ConicStats) -> String {
     let mut text = format!("{} solved by {solver}", counted(stats.programs, "program"));
     if let Some(outcome) = stats.fallback_from {
         text += &format!(", after our own solver ended with {}", name(to_json(&outcome)));
+    }
+    if let Some(part) = stats.remaining.filter(|&part| part > 0.0) {
+        text += &format!(", {part:.0e} of the objective perhaps still to gain");
     }
     text += match stats.injective_by_bound {
         Some(true) => ", mu < 1: no flips by the bound alone",

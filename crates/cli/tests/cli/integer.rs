@@ -30,10 +30,39 @@ fn the_report_tells_what_was_asked_and_achieved() {
     let report: Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!(report["grid"]["requested"]["edge-length"], 0.1);
     assert_eq!(report["grid"]["edge_length"], 0.1);
-    let quads = report["grid"]["quads"].as_f64().unwrap();
-    assert!((quads - quads.round()).abs() < 1e-6 && quads > 1000.0, "{quads}");
-    assert_eq!(report["integer_certificate"]["area"], report["grid"]["quads"]);
+    // A whole number, without a trace of rounding.
+    let quads = report["grid"]["quads"].as_u64().unwrap();
+    assert!(quads > 1000, "{quads}");
+    assert_eq!(report["integer_certificate"]["area"].as_f64(), Some(quads as f64));
+    assert!(run_summary(&folder).contains(&format!("grid         {quads} quads, asked for")));
     assert!(folder.names().contains(&"p/layout.png".to_owned()));
+}
+
+fn run_summary(folder: &Folder) -> String {
+    folder.expect(0, &["integer", "in.off", "--edge-length", "0.1", "-o", "o.obj"]).stdout
+}
+
+#[test]
+fn features_that_the_map_does_not_follow_are_listed() {
+    let folder = Folder::new();
+    folder
+        .write_obj("in.obj", &testkit::bumpy(&testkit::subdivide(&testkit::l_bracket()), 0.03, 3));
+    let aligned = ["--features", "angle:40"];
+    folder.expect(0, &["map", "in.obj", "-o", "free.obj", "-q"]);
+    let integer = ["integer", "in.obj", "free.obj", "--quads", "600", "-o", "int.obj"];
+    let run = folder.expect(0, &[&integer[..], &aligned].concat());
+    assert!(run.stdout.contains("of 72 edges not aligned"), "{}", run.stdout);
+    assert!(run.stdout.contains(": the map given does not follow it"), "{}", run.stdout);
+    let run = folder.expect(0, &[&integer[..], &aligned, &["--json"]].concat());
+    let features = serde_json::from_str::<Value>(&run.stdout).unwrap()["features"].take();
+    let dropped = features["dropped"].as_array().unwrap();
+    assert!(!dropped.is_empty() && dropped.iter().all(|edge| edge["reason"] == "not-in-map"));
+    assert_eq!(features["edges"], 72);
+    assert_eq!(features["kept"], 72 - dropped.len());
+    // Neither do its quads.
+    let extract = ["extract", "int.obj", "-o", "q.obj"];
+    let run = folder.expect(0, &[&extract[..], &aligned].concat());
+    assert!(run.stdout.contains("of 72 edges not aligned"), "{}", run.stdout);
 }
 
 #[test]

@@ -106,6 +106,40 @@ fn a_map_is_laid_out_anew() {
     assert!(arap("rigid.obj") < arap("map.obj"));
 }
 
+fn lay_out<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    let layout = ["layout", "in.obj", "map.obj", "-o", "new.obj", "--objective"];
+    [&layout[..], arguments].concat()
+}
+
+#[test]
+fn the_dilatation_is_minimised_by_several_methods_and_bounded() {
+    let folder = mapped();
+    let value = json(&folder.expect(0, &lay_out(&["dilatation-alternating", "--json"])).stdout);
+    let smallest = value["components"][0]["after"].as_f64().unwrap();
+    assert!(smallest > 1.0);
+    let bound = format!("{}", 1.2 * smallest);
+    let bounded = lay_out(&["dilatation-alternating", "--bound", &bound]);
+    let run = folder.expect(0, &bounded);
+    assert!(run.stdout.contains("objective    symmetric-dirichlet"), "{}", run.stdout);
+    assert!(run.stdout.contains("bound        dilatation"), "{}", run.stdout);
+    let value = json(&folder.expect(0, &[&bounded[..], &["--json"]].concat()).stdout);
+    let stats = &value["components"][0];
+    assert!(stats["dilatation"].as_f64().unwrap() <= 1.2 * smallest * (1.0 + 1e-6));
+    assert_eq!(value["options"]["bound"].as_f64().unwrap(), 1.2 * smallest);
+    folder.expect(0, &["check", "in.obj", "new.obj"]);
+    let measured = json(&folder.expect(0, &["measure", "in.obj", "new.obj", "--json"]).stdout);
+    let measures = measured["measures"].as_array().unwrap();
+    let dilatation = measures.iter().find(|m| m["measure"] == "dilatation").unwrap();
+    assert!(dilatation["max"].as_f64().unwrap() <= 1.2 * smallest * (1.0 + 1e-6));
+
+    let run = folder.expect(3, &lay_out(&["dilatation", "--bound", "1.0001"]));
+    assert!(run.stderr.contains("dilatation of at most 1.0001 was found"), "{}", run.stderr);
+    let run = folder.expect(2, &lay_out(&["dilatation", "--bound", "0.9"]));
+    assert!(run.stderr.contains("no map has a dilatation below 1"), "{}", run.stderr);
+    let run = folder.expect(2, &lay_out(&["tau", "--bound", "2"]));
+    assert!(run.stderr.contains("one on the dilatation, not on tau"), "{}", run.stderr);
+}
+
 #[test]
 fn disks_need_no_map_and_stretches_come_from_a_file() {
     let folder = Folder::new();

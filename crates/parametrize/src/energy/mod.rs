@@ -1,5 +1,6 @@
 //! What a layout is measured by: triangles, their Jacobians, and energies of the two signed singular values.
 
+mod bounded_dilatation;
 mod dirichlet;
 mod distance;
 mod hessian;
@@ -8,6 +9,7 @@ mod triangle;
 mod untangling;
 mod window;
 
+pub use bounded_dilatation::BoundedDilatation;
 pub use dirichlet::{PowerOfDirichlet, SymmetricDirichlet};
 pub use distance::{Arap, Asap, Guarded};
 pub use hessian::ProjectedHessian;

@@ -21,7 +21,7 @@ pub enum ReleaseReason {
     Cap,
     /// The layout had flipped triangles or wrong angles near it.
     NoLayout,
-    /// The map to lay out anew does not follow it.
+    /// The map that was given does not follow it.
     NotInMap,
 }
 
@@ -32,7 +32,7 @@ impl std::fmt::Display for ReleaseReason {
             Self::Needle => "needle between two feature edges",
             Self::Cap => "too few triangles between two feature edges",
             Self::NoLayout => "no layout near it",
-            Self::NotInMap => "not along an axis of the map to start from",
+            Self::NotInMap => "the map given does not follow it",
         })
     }
 }
@@ -46,6 +46,13 @@ pub struct ReleasedFeature {
     pub vertices: [u32; 2],
     /// Why.
     pub reason: ReleaseReason,
+}
+
+impl ReleasedFeature {
+    /// An edge that is not aligned for a reason.
+    pub fn new(vertices: [u32; 2], reason: ReleaseReason) -> Self {
+        Self { vertices, reason }
+    }
 }
 
 /// Sectors narrower than this, in quarters, count as needles: they come from the noise of slivers.
@@ -83,7 +90,12 @@ pub(crate) fn drop_conflicts(
     (kept, released)
 }
 
-fn released(mesh: &TriMesh, edges: &[Halfedge], reason: ReleaseReason) -> Vec<ReleasedFeature> {
+/// Edges that are dropped for a reason, by their ends.
+pub(crate) fn released(
+    mesh: &TriMesh,
+    edges: &[Halfedge],
+    reason: ReleaseReason,
+) -> Vec<ReleasedFeature> {
     let ends = |h: Halfedge| [mesh.origin(h).0, mesh.tip(h).0];
     edges.iter().map(|&h| ReleasedFeature { vertices: ends(h), reason }).collect()
 }

@@ -5,6 +5,7 @@ mod conflicts;
 mod sectors;
 
 pub use bounds::{QUARTERS_PER_CORNER, index_bounds};
+pub(crate) use conflicts::released;
 pub use conflicts::{ReleaseReason, ReleasedFeature};
 pub(crate) use conflicts::{drop_conflicts, release_near};
 pub(crate) use sectors::LARGEST_INDEX;

@@ -3,6 +3,7 @@
 use super::certificate::SeamlessMap;
 use super::tolerance::AlignmentTolerance;
 use super::violation::{Violation, Violations};
+use crate::features::{ReleaseReason, ReleasedFeature, released};
 use crate::quarter::within;
 use num_complex::Complex64;
 use seamstress_mesh::features::{EdgeSet, Sector, sectors};
@@ -71,22 +72,27 @@ impl Alignment {
     }
 }
 
-/// Those of some edges, given by their end vertices, whose images run along the axes of a map.
-#[must_use]
-pub fn edges_along_axes(
+/// The features that run along the axes of a map on either side, and the others: dropped, since the map does not
+/// follow them.
+///
+/// # Errors
+/// Sectors of the former whose angle is no positive number of quarter turns.
+pub fn followed(
     mesh: &TriMesh,
     map: &SeamlessMap,
-    edges: &[[u32; 2]],
-    tolerance: &AlignmentTolerance,
-) -> Vec<[u32; 2]> {
+    features: &EdgeSet,
+) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
+    let tolerance = AlignmentTolerance::default();
     let check = Check { mesh, corner_uvs: map.corner_uvs(), violations: Vec::new() };
-    let is_along = |&[a, b]: &[u32; 2]| {
-        mesh.edge_between(Vertex(a), Vertex(b)).is_some_and(|edge| {
-            let mut sides = std::iter::once(edge).chain(mesh.twin(edge));
-            sides.all(|side| within(degrees_off_axis(check.image(side)), tolerance.axis()))
-        })
+    let is_along = |&edge: &Halfedge| {
+        let mut sides = std::iter::once(edge).chain(mesh.twin(edge));
+        sides.all(|side| within(degrees_off_axis(check.image(side)), tolerance.axis()))
     };
-    edges.iter().copied().filter(is_along).collect()
+    let (along, off): (Vec<Halfedge>, Vec<Halfedge>) =
+        features.edges().iter().copied().partition(is_along);
+    let kept = EdgeSet::new(mesh, along);
+    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), &tolerance)?;
+    Ok((kept, released(mesh, &off, ReleaseReason::NotInMap)))
 }
 
 struct Check<'a> {

@@ -8,7 +8,7 @@ mod source;
 mod tolerance;
 mod violation;
 
-pub use alignment::{Alignment, edges_along_axes};
+pub use alignment::{Alignment, followed};
 pub use certificate::{Certificate, Cone, SeamEdge, SeamlessMap};
 pub use source::compare_source;
 pub use tolerance::{AlignmentTolerance, Tolerance, ToleranceError};

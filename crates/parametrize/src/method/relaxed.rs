@@ -47,7 +47,8 @@ pub(super) fn relax(
     if domain.any_aligned() { Ok(relaxed) } else { relaxed.sharpened(watch) }
 }
 
-/// The layout with its worst triangles polished, at the best global scale; and the iterations it took.
+/// The layout with its worst triangles polished, at the best global scale; and the iterations it took. With options,
+/// what sharpening has raised the energy to is kept only within the rise that they allow.
 ///
 /// # Errors
 /// When the caller asks to stop.
@@ -60,14 +61,9 @@ pub(super) fn polish(
     let before = relaxed.iterations;
     let relaxed = if domain.any_aligned() { relaxed.sharpened(watch)? } else { relaxed };
     let mut iterations = relaxed.iterations - before;
-    // Where edges are aligned, sharpening is mostly all that can be done: few triangles hold tau up.
-    let is_spent =
-        |options: &&PolishOptions| domain.any_aligned() && relaxed.has_risen_beyond(options);
-    let options = options.filter(|options| !is_spent(options));
     let RelaxedLayout { mut layout, relaxed, .. } = relaxed;
-    if let Some(options) = options
-        && let Some(polished) = lower_tau(&mut layout.space, &relaxed, &layout.y, options, watch)?
-    {
+    if let Some(options) = options {
+        let polished = lower_tau(&mut layout.space, &relaxed, &layout.y, options, watch)?;
         layout.y = polished.y;
         iterations += polished.iterations;
     }
@@ -93,13 +89,6 @@ impl RelaxedLayout {
             }
         }
         Ok(self)
-    }
-
-    /// Whether sharpening has raised the energy by more than the polish may. It hardly ever finds
-    /// anything then.
-    fn has_risen_beyond(&self, options: &PolishOptions) -> bool {
-        let (minimum, _) = self.layout.space.distortion(&self.relaxed);
-        self.symmetric_dirichlet > (1.0 + options.max_energy_rise) * minimum
     }
 }
 

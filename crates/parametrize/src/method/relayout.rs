@@ -2,18 +2,18 @@
 
 use super::components::by_component;
 use super::domain::corner_uvs;
-use super::whole::{AlignedMap, FeatureTally, followed};
+use super::whole::{AlignedMap, FeatureTally};
 use super::{MapError, MethodError};
+use crate::energy::SymmetricDirichlet;
 use crate::features::{ReleasedFeature, Sectors};
 use crate::layout::anisotropy::Anisotropy;
 use crate::layout::disk::embed_disk;
-use crate::layout::energy::SymmetricDirichlet;
 use crate::layout::exact::ExactLayout;
 use crate::layout::newton::NewtonOptions;
 use crate::layout::objective::{
-    ConicStats, Ending, Objective, ObjectiveOptions, Optimized, optimize,
+    ConicStats, Ending, Objective, ObjectiveOptions, OptimizeError, Optimized, optimize,
 };
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, followed};
 use crate::progress::{Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use seamstress_mesh::features::EdgeSet;
@@ -86,6 +86,9 @@ pub struct RelayoutStats {
     pub ending: Ending,
     /// How the conic programs were solved, if there were any.
     pub conic: Option<ConicStats>,
+    /// The largest dilatation, where it was bounded; the figures are then of the symmetric Dirichlet energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dilatation: Option<f64>,
 }
 
 /// Lays a seamless map out anew for an objective, with its matchings and cones. Its seams may come to lie
@@ -154,8 +157,8 @@ fn run(
         let here: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
-        let (kept, released) =
-            followed(&piece.mesh, &map, asked.restrict(piece)).map_err(MethodError::Uncertified)?;
+        let (kept, released) = followed(&piece.mesh, &map, &asked.restrict(piece))
+            .map_err(MethodError::Uncertified)?;
         outcome.add(piece, &kept, &released);
         improve(piece, &metric, &map, &kept, options, watch)
     })?;
@@ -187,23 +190,41 @@ fn improve(
         // The map holds in floating point, but not the layout that closes its seams exactly.
         return Err(MethodError::Defective(defects));
     }
-    let Optimized { y, value, before, iterations, ending, conic } =
+    let Optimized { y, value, before, iterations, ending, conic, dilatation } =
         optimize(&sectors, &mut layout, y, options.objective, &options.settings, watch)?;
+    let faces = mesh.n_faces();
     let stats = |after, ending| RelayoutStats {
-        faces: mesh.n_faces(),
+        faces,
         before,
         after,
         iterations,
         ending,
         conic,
+        dilatation,
     };
     let uvs = corner_uvs(mesh, metric, &layout, &y);
     let pairs = features.vertex_pairs(mesh);
-    let is_aligned = |map: &SeamlessMap| {
-        Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default()).is_ok()
+    let certify = || {
+        let better = SeamlessMap::certify(mesh, uvs, &options.tolerance)?;
+        Alignment::certify(mesh, &better, &pairs, &AlignmentTolerance::default())?;
+        Ok(better)
     };
-    match SeamlessMap::certify(mesh, uvs, &options.tolerance).ok().filter(is_aligned) {
-        Some(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
-        None => Ok((map.corner_uvs().to_vec(), stats(before, Ending::NoGain))),
+    match certify() {
+        Ok(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
+        // The map given may not keep the bound.
+        Err(violations) if options.settings.dilatation_bound.is_some() => {
+            Err(MethodError::Uncertified(violations))
+        }
+        Err(_) => Ok((map.corner_uvs().to_vec(), stats(before, Ending::NoGain))),
+    }
+}
+
+impl MapError {
+    /// Whether no layout that keeps the bound on the dilatation was found.
+    pub fn is_infeasible(&self) -> bool {
+        let Self::Component { cause: MethodError::Objective(cause), .. } = self else {
+            return false;
+        };
+        matches!(cause, OptimizeError::Infeasible { .. })
     }
 }

@@ -1,11 +1,10 @@
 //! Features of the mesh and of its components, and the certificate of the whole.
 
 use super::MapError;
-use crate::features::{ReleaseReason, ReleasedFeature};
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation, Violations};
+use crate::features::ReleasedFeature;
+use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Halfedge, TriMesh, Vertex};
-use std::collections::BTreeSet;
 
 /// What became of the features of all components, in the ids of the whole mesh.
 #[derive(Debug, Default)]
@@ -54,31 +53,4 @@ impl FeatureTally {
         let alignment = Alignment::certify(mesh, &map, &pairs, &AlignmentTolerance::default())?;
         Ok(AlignedMap { map, features, alignment, released })
     }
-}
-
-/// The features that run along the axes of a map, and the others.
-///
-/// # Errors
-/// Sectors of the former whose angle is no positive number of quarter turns.
-pub fn followed(
-    mesh: &TriMesh,
-    map: &SeamlessMap,
-    features: EdgeSet,
-) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
-    let tolerance = AlignmentTolerance::default();
-    let Err(Violations(found)) =
-        Alignment::certify(mesh, map, &features.vertex_pairs(mesh), &tolerance)
-    else {
-        return Ok((features, Vec::new()));
-    };
-    let off_axis = |violation: &Violation| match *violation {
-        Violation::OffAxis { vertices, .. } => Some(vertices),
-        _ => None,
-    };
-    let off: BTreeSet<[u32; 2]> = found.iter().filter_map(off_axis).collect();
-    let edge = |&[a, b]: &[u32; 2]| mesh.edge_between(Vertex(a), Vertex(b));
-    let kept = features.without(mesh, off.iter().filter_map(edge));
-    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), &tolerance)?;
-    let reason = ReleaseReason::NotInMap;
-    Ok((kept, off.into_iter().map(|vertices| ReleasedFeature { vertices, reason }).collect()))
 }

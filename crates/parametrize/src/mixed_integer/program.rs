@@ -1,8 +1,9 @@
 //! The bounded-distortion program (9) over layouts in which only the rounded seams close.
 
 use super::search::{Relax, Relaxed, Verdict};
-use crate::layout::conic::interior_point::{self, Renewal};
-use crate::layout::conic::{Outcome, Program, ProgramKind, Solver, SolverOptions, solve};
+use crate::layout::conic::{
+    Outcome, Program, ProgramKind, Renewal, Solver, SolverOptions, interior_point, solve,
+};
 use crate::layout::exact::ExactLayout;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::turn;
@@ -87,12 +88,8 @@ impl BatchProgram<'_> {
             Err(error) => return Ok(Err(error)),
         };
         let frames = self.frames.iter().zip(layout.gauge.iter()).map(|(&r, &k)| turn(r, k));
-        let program = Program {
-            kind: ProgramKind::Stretch,
-            frames: frames.collect(),
-            scales: None,
-            left: None,
-        };
+        let program =
+            Program { kind: ProgramKind::Stretch, frames: frames.collect(), scales: None };
         let Some(start) = inside(&mut layout, &program, start, watch)? else {
             return Ok(Ok(Verdict::Infeasible));
         };

@@ -50,6 +50,12 @@ impl Unit {
         ((p.u | p.v) & mask == 0).then_some([p.u >> self.bits, p.v >> self.bits])
     }
 
+    /// Whether two points lie on one line of the grid.
+    pub(super) fn is_on_line(self, a: Point, b: Point) -> bool {
+        let is_line = |x: i64, y: i64| x == y && x & (self.one() - 1) == 0;
+        is_line(a.u, b.u) || is_line(a.v, b.v)
+    }
+
     /// Grid units.
     pub(super) fn to_f64(self, p: Point) -> [f64; 2] {
         let one = self.one() as f64;

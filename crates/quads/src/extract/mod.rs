@@ -28,7 +28,7 @@ use fixed::Point;
 use patches::Patches;
 use pieces::Pieces;
 use points::{GridPoints, Site};
-use seamstress_mesh::{Face, TriMesh};
+use seamstress_mesh::{Face, Halfedge, TriMesh};
 use snap::{GridMap, snap};
 
 /// How to extract.
@@ -59,6 +59,9 @@ pub struct Extraction {
     pub cones: Vec<QuadCone>,
     /// How far the map was from exactness.
     pub snapping: Snapping,
+    /// Edges of the source that lie on lines of the grid on either side, by their ends: chains of edges of quads
+    /// run along them. Features that are not among them are not followed.
+    pub edges_on_grid_lines: Vec<[u32; 2]>,
     /// Area of the map in grid units: as many quads are expected of a closed surface.
     pub uv_area: f64,
     /// Cells that the boundary cuts; they give no quad.
@@ -190,6 +193,7 @@ fn build(source: &Source<'_>, quads: &Quads, folds: Option<Folds>) -> Extraction
         sources,
         cones: cones(source, &numbers),
         snapping: source.map.snapping,
+        edges_on_grid_lines: edges_on_grid_lines(source.mesh, source.map),
         uv_area: uv_area(source.mesh, source.map),
         trimmed: quads.trimmed,
         split_vertices,
@@ -216,6 +220,15 @@ fn cones(source: &Source<'_>, numbers: &[u32]) -> Vec<QuadCone> {
         _ => None,
     };
     numbers.iter().enumerate().filter_map(cone).collect()
+}
+
+fn edges_on_grid_lines(mesh: &TriMesh, map: &GridMap) -> Vec<[u32; 2]> {
+    let is_on_line = |h: Halfedge| {
+        let [a, b] = map.ends(h);
+        map.unit.is_on_line(a, b)
+    };
+    let edges = mesh.edges().filter(|&h| is_on_line(h) && mesh.twin(h).is_none_or(is_on_line));
+    edges.map(|h| [mesh.origin(h).0, mesh.tip(h).0]).collect()
 }
 
 fn uv_area(mesh: &TriMesh, map: &GridMap) -> f64 {

@@ -3,7 +3,7 @@
 use super::Choice;
 use super::input::Input;
 use crate::process::{cpu_seconds, forget_peak_memory, memory, peak_memory};
-use seamstress_parametrize::layout::conic::{ConicObjective, Solver, SolverOptions, solve};
+use seamstress_parametrize::layout::conic::{MaximalMeasure, Solver, SolverOptions, solve};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::progress::Watch;
 use std::error::Error;
@@ -53,17 +53,17 @@ pub(super) fn solve_alone(
     tolerance: f64,
 ) -> Result<Measurement, Box<dyn Error>> {
     let input = Input::load(path)?;
-    let objective = match program {
-        Choice::ArapMax => ConicObjective::ArapMax,
-        Choice::Tau => ConicObjective::TauAlternating,
-        Choice::AsapMax => ConicObjective::AsapMax,
-        Choice::Dilatation => ConicObjective::Dilatation,
+    let measure = match program {
+        Choice::ArapMax => MaximalMeasure::Arap,
+        Choice::Tau => MaximalMeasure::Tau,
+        Choice::AsapMax => MaximalMeasure::Asap,
+        Choice::Dilatation => MaximalMeasure::Dilatation,
     };
     let options = SolverOptions { tolerance, ..SolverOptions::default() };
     let mut observe = |_| ControlFlow::Continue(());
     let mut watch = Watch::new(&mut observe, 0, 1);
 
-    let program = objective.program(input.layout.problem(), None, &input.z);
+    let program = measure.program(input.layout.problem(), &input.z);
     let Input { layout, y, z } = input;
     // The own solver sets up ordering, analysis and factor: they count as its own.
     let (space, triangles) =

@@ -1,33 +1,36 @@
-//! Algorithm 1 of the seed: global steps by a conic program, local steps by polar decomposition.
+//! Algorithm 1 of Levi 2021, suppl.: global steps by a conic program, local steps by polar decomposition.
 
 use super::Run;
-use super::objective::ConicObjective;
+use super::measure::MaximalMeasure;
+use super::settling::Settling;
 use super::solver::solve;
 use crate::progress::{Cancelled, Watch};
 
 impl Run<'_> {
-    /// Alternates until the measure settles.
+    /// Alternates until the measure has settled to the tolerance.
     ///
     /// The layout with its own frames satisfies the program of its own value, so a global step never raises
     /// that value, and neither does the local step: frames and scales are the best ones of their triangles.
     pub(super) fn alternate(
         &mut self,
-        objective: ConicObjective,
+        measure: MaximalMeasure,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(), Cancelled> {
         let options = self.options;
+        let mut settling = Settling::new(self.descent.value());
         for _ in 0..options.max_rounds {
-            let before = self.descent.value;
-            let program = objective.program(self.problem, self.left, &self.descent.z);
+            let program = measure.program(self.problem, &self.descent.z);
             let start = &self.descent.y;
             let global =
                 solve(self.problem, &program, start, options.solver, &options.program, watch)?;
             self.descent.record(&global);
-            self.descent.move_to(self.problem, objective, self.left, &global.y);
-            if self.descent.value >= before * (1.0 - options.tolerance) {
+            self.descent.move_to(self.problem, &global.y);
+            settling.push(self.descent.value());
+            if settling.remaining() <= options.tolerance {
                 break;
             }
         }
+        self.descent.remaining = Some(settling.remaining());
         Ok(())
     }
 }

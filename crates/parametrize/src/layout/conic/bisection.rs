@@ -1,9 +1,10 @@
 //! Bounded dilatation by bisection over the bound (Lipman 2012), to compare eq. (12) with.
 
 use super::general::{Cone, End, run};
-use super::objective::ConicObjective;
+use super::measure::MaximalMeasure;
 use super::program::Program;
 use super::rows::{Row, Rows, part_rows};
+use super::settling::Settling;
 use super::solver::{ConicSolution, Outcome, Solver};
 use super::{ConicOptions, Run};
 use crate::layout::problem::LayoutProblem;
@@ -13,30 +14,32 @@ use crate::progress::{Cancelled, Watch};
 const BRACKET: f64 = 1e-3;
 
 impl Run<'_> {
-    /// Bisects for the least K with `|w| <= k Re(z conj R)`, `k = (K - 1) / (K + 1)`, then renews the frames,
+    /// Bisects for the smallest K with `|w| <= k Re(z conj R)`, `k = (K - 1) / (K + 1)`, then renews the frames,
     /// in turns.
     pub(super) fn bisect(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
-        let objective = ConicObjective::DilatationBisection;
+        let mut settling = Settling::new(self.descent.value());
         for _ in 0..self.options.max_rounds {
-            let before = self.descent.value;
-            let program = objective.program(self.problem, self.left, &self.descent.z);
-            let (mut lowest, mut highest) = (1.0, self.descent.value);
+            let program = MaximalMeasure::Dilatation.program(self.problem, &self.descent.z);
+            let (mut lowest, mut highest) = (1.0, self.descent.value());
             while highest - lowest > BRACKET * lowest {
                 watch.pulse()?;
                 let bound = 0.5 * (lowest + highest);
                 let attempt = bounded(self.problem, &program, bound, self.options);
                 self.descent.record(&attempt);
                 if attempt.outcome == Outcome::Solved && attempt.objective <= 0.0 {
-                    self.descent.move_to(self.problem, objective, self.left, &attempt.y);
-                    highest = self.descent.value.min(bound);
+                    self.descent.move_to(self.problem, &attempt.y);
+                    highest = self.descent.value().min(bound);
                 } else {
                     lowest = bound;
                 }
             }
-            if self.descent.value >= before * (1.0 - self.options.tolerance) {
+            settling.push(self.descent.value());
+            if settling.remaining() <= self.options.tolerance {
                 break;
             }
         }
+        // No bisection is finer than its bracket.
+        self.descent.remaining = Some(settling.remaining().max(BRACKET));
         Ok(())
     }
 }
@@ -55,8 +58,7 @@ fn bounded(
     let mut cones = Vec::with_capacity(triangles.len());
     let mut mean = vec![0.0; n];
     for (t, triangle) in triangles.iter().enumerate() {
-        let left = program.left.as_ref().map(|left| &left[t]);
-        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, 1.0, left);
+        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, 1.0);
         let along = z0.times(program.frames[t].re).plus(&z1.times(program.frames[t].im));
         along.add_to(&mut mean, triangle.weight);
         rows.push(&along.times(k).plus(&Row::of(n, 1.0)), 0.0);

@@ -2,7 +2,7 @@
 //!
 //! Elements are arrays with the axis first.
 
-use crate::layout::triangle::smallest_positive_root;
+use crate::energy::smallest_positive_root;
 
 /// `sum of a_i b_i`.
 #[inline]

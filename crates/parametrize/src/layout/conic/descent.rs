@@ -1,11 +1,10 @@
 //! The best flip-free layout so far.
 
-use super::objective::ConicObjective;
-use super::program::Matrix2;
+use super::measure::MaximalMeasure;
 use super::solver::{ConicSolution, Outcome, Solver};
+use crate::energy::largest_step;
 use crate::layout::exact::is_positive;
 use crate::layout::problem::LayoutProblem;
-use crate::layout::triangle::largest_step;
 use num_complex::Complex64;
 
 /// Part of the way to the first collapsing triangle that is taken where a step would flip one.
@@ -15,7 +14,10 @@ const FLIP_FREE_FRACTION: f64 = 0.9;
 pub(super) struct Descent {
     pub(super) y: Vec<f64>,
     pub(super) z: Vec<Complex64>,
-    pub(super) value: f64,
+    measure: MaximalMeasure,
+    value: f64,
+    /// The estimated fall still to come in the phase, as a part of the value.
+    pub(super) remaining: Option<f64>,
     pub(super) rounds: usize,
     pub(super) iterations: usize,
     pub(super) outcome: Outcome,
@@ -24,22 +26,33 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    pub(super) fn new(
-        problem: &LayoutProblem,
-        objective: ConicObjective,
-        left: Option<&[Matrix2]>,
-        y: Vec<f64>,
-    ) -> Self {
+    pub(super) fn new(problem: &LayoutProblem, measure: MaximalMeasure, y: Vec<f64>) -> Self {
         let z = problem.space().expand(&y);
         Self {
-            value: objective.value(problem, left, &z),
+            measure,
+            value: measure.of_layout(problem, &z),
             y,
             z,
+            remaining: None,
             rounds: 0,
             iterations: 0,
             outcome: Outcome::Solved,
             solver_used: Solver::Own,
             fallback_from: None,
+        }
+    }
+
+    /// The measure of the layout.
+    pub(super) fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// Begins a phase: judges layouts by another measure from here on.
+    pub(super) fn measure_by(&mut self, problem: &LayoutProblem, measure: MaximalMeasure) {
+        self.remaining = None;
+        if measure != self.measure {
+            self.measure = measure;
+            self.value = measure.of_layout(problem, &self.z);
         }
     }
 
@@ -52,14 +65,8 @@ impl Descent {
         self.fallback_from = self.fallback_from.or(solution.fallback_from);
     }
 
-    /// Moves to a layout, or towards it as far as no triangle flips, if the measure falls; whether it did.
-    pub(super) fn move_to(
-        &mut self,
-        problem: &LayoutProblem,
-        objective: ConicObjective,
-        left: Option<&[Matrix2]>,
-        y: &[f64],
-    ) -> bool {
+    /// Moves to a layout, or towards it as far as no triangle flips, if the measure falls.
+    pub(super) fn move_to(&mut self, problem: &LayoutProblem, y: &[f64]) {
         let mut z = problem.space().expand(y);
         let mut y = y.to_vec();
         if !is_flip_free(problem, &z) {
@@ -70,12 +77,10 @@ impl Descent {
             y = self.y.iter().zip(&step).map(|(y, d)| y + part * d).collect();
             z = problem.space().expand(&y);
         }
-        let value = objective.value(problem, left, &z);
-        let better = value < self.value && is_flip_free(problem, &z);
-        if better {
+        let value = self.measure.of_layout(problem, &z);
+        if value < self.value && is_flip_free(problem, &z) {
             (self.y, self.z, self.value) = (y, z, value);
         }
-        better
     }
 }
 

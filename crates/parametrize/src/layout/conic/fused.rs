@@ -1,8 +1,9 @@
 //! Local steps inside the interior point: one run in place of many programs.
 
 use super::Run;
-use super::interior_point::{Renewal, solve};
-use super::objective::ConicObjective;
+use super::interior_point::solve;
+use super::measure::MaximalMeasure;
+use super::program::Renewal;
 use super::solver::SolverOptions;
 use crate::progress::{Cancelled, Watch};
 
@@ -16,10 +17,10 @@ impl Run<'_> {
     /// every iteration. A heuristic without proof of convergence: the result is taken only if it is better.
     pub(super) fn fused(
         &mut self,
-        objective: ConicObjective,
+        measure: MaximalMeasure,
         watch: &mut Watch<'_, '_>,
     ) -> Result<(), Cancelled> {
-        let program = objective.program(self.problem, self.left, &self.descent.z);
+        let program = measure.program(self.problem, &self.descent.z);
         let renewal = match program.scales {
             None => Renewal::Frames,
             Some(_) => Renewal::FramesAndScales,
@@ -30,7 +31,7 @@ impl Run<'_> {
         };
         let solution = solve(self.problem, &program, &self.descent.y, renewal, &limits, watch)?;
         self.descent.record(&solution);
-        self.descent.move_to(self.problem, objective, self.left, &solution.y);
+        self.descent.move_to(self.problem, &solution.y);
         Ok(())
     }
 }

@@ -7,24 +7,12 @@
 
 use super::cells::{Cones, DeviationCones, StretchCones};
 use super::passes::{Cell, Tally, affine_steps, assemble, corrected_steps, correction, move_on};
-use super::program::{Program, ProgramKind};
+use super::program::{Program, ProgramKind, Renewal};
 use super::solver::{ConicSolution, Outcome, Solver, SolverOptions};
 use super::start;
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
-
-/// What is adapted to the iterate within the interior point; the program then changes on the way, and the
-/// method is a heuristic ("fused" local and global steps).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Renewal {
-    /// Nothing: the program is solved as it stands.
-    Never,
-    /// Frames, by polar decomposition.
-    Frames,
-    /// Frames and scales.
-    FramesAndScales,
-}
 
 /// Part of the way to the boundary that a step may take.
 const STEP_FRACTION: f64 = 0.99;
@@ -35,9 +23,9 @@ const SHORTEST_STEP: f64 = 1e-9;
 /// Relative raises of the diagonal against rounding, one after the other until there is a factor. Steps stay
 /// directions of descent with the larger ones, and get shorter.
 const RAISES: [f64; 3] = [1e-13, 1e-11, 1e-9];
-/// Least centring parameter.
-const LEAST_CENTRING: f64 = 1e-8;
-/// Values below this count as this when a gap is compared to them: the optimum of (8) may be 0.
+/// Smallest centring parameter.
+const SMALLEST_CENTRING: f64 = 1e-8;
+/// Floor for the objective when the duality gap is made relative: the optimum of (8) may be 0.
 const SMALLEST_SCALE: f64 = 1e-2;
 
 /// Solves a program from a layout inside its constraints.
@@ -162,15 +150,18 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
             if !(now.gap.is_finite() && RAISES.iter().any(raised)) {
                 return Ok(Outcome::LostDefiniteness);
             }
-            if !self.step(&now) {
-                return Ok(Outcome::Stalled);
+            if let Err(outcome) = self.step(&now) {
+                return Ok(outcome);
             }
             end.iterations += 1;
         }
     }
 
-    /// One predictor and corrector; whether it got anywhere.
-    fn step(&mut self, now: &Tally) -> bool {
+    /// One predictor and corrector.
+    ///
+    /// # Errors
+    /// [`Outcome::Stalled`] if the step leads nowhere.
+    fn step(&mut self, now: &Tally) -> Result<(), Outcome> {
         let (problem, v) = (&mut *self.problem, &mut self.vectors);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         v.border_solution.copy_from_slice(&v.border);
@@ -182,7 +173,7 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
         scale_into(&v.border_solution, -affine_bound, &mut v.step);
         problem.space().expand_into(&v.step, &mut v.dz);
         let affine = affine_steps::<D, C, K>(problem, &mut self.cells, &v.dz, affine_bound);
-        let centring = affine.centring(now.gap).clamp(LEAST_CENTRING, 1.0);
+        let centring = affine.centring(now.gap).clamp(SMALLEST_CENTRING, 1.0);
         let target = centring * now.gap / (self.cells.len() * C) as f64;
 
         let tally = correction::<D, C, K>(problem, &mut self.cells, target, &mut v.step);
@@ -198,16 +189,16 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
             _ => STEP_FRACTION_RENEWED,
         };
         let [primal, dual] = reach.steps.map(|s| (fraction * s).min(1.0));
-        // Also false for steps that are not numbers.
+        // Also so for steps that are not numbers.
         if !(primal.max(dual) > SHORTEST_STEP && bound_step.is_finite()) {
-            return false;
+            return Err(Outcome::Stalled);
         }
         v.y.iter_mut().zip(&v.step).for_each(|(y, d)| *y += primal * d);
         v.z.iter_mut().zip(&v.dz).for_each(|(z, d)| *z += primal * d);
         self.bound += primal * bound_step;
         self.infeasibility *= 1.0 - dual;
         move_on(problem, &mut self.cells, primal, dual);
-        true
+        Ok(())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Layouts of least maximal distortion, by second-order cone programs (seed, sections 4.2 and 5).
+//! Layouts of minimum maximal distortion, by second-order cone programs (Levi 2021, suppl. sec. 4.2 and 5).
 
 mod alternate;
 mod bisection;
@@ -9,21 +9,44 @@ mod element;
 mod fused;
 mod general;
 pub mod interior_point;
-mod objective;
+mod measure;
 mod passes;
 pub mod program;
 pub mod reference;
 mod rows;
+mod settling;
 pub mod solver;
 mod start;
 
-pub use objective::ConicObjective;
-pub use program::{Matrix2, Program, ProgramKind};
+pub use measure::MaximalMeasure;
+pub use program::{Program, ProgramKind, Renewal};
 pub use solver::{ConicSolution, Outcome, Solver, SolverOptions, solve};
 
 use super::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
 use descent::{Descent, is_flip_free};
+
+/// One part of a minimisation; it goes on from where the one before has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// A single interior-point run in which the local step is done in every iteration. It takes most rounds'
+    /// place, and needs the own solver: with another one it is left out.
+    Fused(MaximalMeasure),
+    /// Algorithm 1 as printed: a program for given frames and scales, and new ones, in turns.
+    Alternating(MaximalMeasure),
+    /// Bisection over bounds on the dilatation (Lipman 2012), frames renewed in between.
+    Bisection,
+}
+
+impl Phase {
+    /// What it lowers.
+    pub fn measure(self) -> MaximalMeasure {
+        match self {
+            Self::Fused(measure) | Self::Alternating(measure) => measure,
+            Self::Bisection => MaximalMeasure::Dilatation,
+        }
+    }
+}
 
 /// Settings of [`minimize`].
 #[derive(Debug, Clone)]
@@ -34,11 +57,9 @@ pub struct ConicOptions {
     pub program: SolverOptions,
     /// Most rounds of local and global steps.
     pub max_rounds: usize,
-    /// Rounds end when one lowers the measure by less than this part.
+    /// Rounds end when the fall of the measure still to come, estimated from the last ones, is less than this part
+    /// of it.
     pub tolerance: f64,
-    /// Anisotropic frames: a matrix A of positive determinant per triangle, by rows, in the triangle's
-    /// target axes; `A^-1 J` is measured in place of the Jacobian J. None: the identity everywhere.
-    pub anisotropy: Option<Vec<Matrix2>>,
 }
 
 impl Default for ConicOptions {
@@ -48,7 +69,6 @@ impl Default for ConicOptions {
             program: SolverOptions::default(),
             max_rounds: 20,
             tolerance: 1e-4,
-            anisotropy: None,
         }
     }
 }
@@ -69,28 +89,23 @@ pub enum ConicError {
     /// Clarabel is asked for, and this build is without it.
     #[error("the solver Clarabel is not part of this build (feature `clarabel`)")]
     NoReferenceSolver,
-    /// The anisotropic frames are not one matrix of positive determinant per triangle.
-    #[error(
-        "the anisotropic frame of triangle {triangle} is missing or has no positive determinant"
-    )]
-    BadFrame {
-        /// The first such triangle.
-        triangle: usize,
-    },
 }
 
 /// A layout of low maximal distortion.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ConicMinimum {
-    /// The unknowns; for objectives that do not depend on scale, at `sigma_1 max sigma_2 min = 1`.
+    /// The unknowns; for measures that do not depend on scale, at `sigma_1 max sigma_2 min = 1`.
     pub y: Vec<f64>,
-    /// The measure reached.
+    /// The measure reached, that of the last phase.
     pub value: f64,
     /// The measure at the start.
     pub value_before: f64,
     /// For eq. (8) and (11): whether `mu < 1`, which by itself proves that no triangle is flipped.
     pub injective_by_bound: Option<bool>,
+    /// The estimated fall of the measure still to come with further rounds, as a part of it; none if the last phase
+    /// has no rounds.
+    pub remaining: Option<f64>,
     /// Programs solved.
     pub rounds: usize,
     /// Interior-point iterations.
@@ -103,58 +118,51 @@ pub struct ConicMinimum {
     pub fallback_from: Option<Outcome>,
 }
 
-/// Minimises a maximal distortion over the layouts of a space, from a flip-free one.
+/// Minimises a maximal distortion over the layouts of a space in one or several phases, from a flip-free one.
 ///
-/// The result has no flips, and is never worse than the start. The methods named after alternation do local
-/// and global steps alone, as printed; the others start with one interior-point run in which the local step
-/// is done in every iteration (with the own solver), which takes most rounds' place. None is guaranteed to
-/// find the global minimum.
+/// The result has no flips, and no phase makes its own measure worse. None is guaranteed to find the global
+/// minimum, or even a local one: alternation has other fixed points, and ends near one of them when the rounds run
+/// out.
 ///
 /// # Errors
 /// [`ConicError`].
 pub fn minimize(
     problem: &mut LayoutProblem,
     y: Vec<f64>,
-    objective: ConicObjective,
+    phases: &[Phase],
     options: &ConicOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<ConicMinimum, ConicError> {
-    let needs_reference =
-        options.solver == Solver::Clarabel || objective == ConicObjective::DilatationBisection;
+    let needs_reference = options.solver == Solver::Clarabel || phases.contains(&Phase::Bisection);
     if needs_reference && !Solver::Clarabel.is_available() {
         return Err(ConicError::NoReferenceSolver);
     }
-    let left = inverses(problem, options)?;
-    let left = left.as_deref();
-    let descent = Descent::new(problem, objective, left, y);
+    let measure = phases.last().map_or(MaximalMeasure::Tau, |phase| phase.measure());
+    let descent = Descent::new(problem, measure, y);
     if let Some(triangle) = descent::first_flip(problem, &descent.z) {
         return Err(ConicError::FlippedStart { triangle });
     }
-    let value_before = descent.value;
-    let mut run = Run { problem, left, options, descent };
-    match objective {
-        ConicObjective::DilatationBisection => run.bisect(watch)?,
-        ConicObjective::TauAlternating | ConicObjective::DilatationAlternating => {
-            run.alternate(objective, watch)?;
+    let value_before = descent.value();
+    let mut run = Run { problem, options, descent };
+    for &phase in phases {
+        run.descent.measure_by(run.problem, phase.measure());
+        match phase {
+            Phase::Fused(_) if options.solver != Solver::Own => {}
+            Phase::Fused(measure) => run.fused(measure, watch)?,
+            Phase::Alternating(measure) => run.alternate(measure, watch)?,
+            Phase::Bisection => run.bisect(watch)?,
         }
-        ConicObjective::Dilatation => {
-            // (11) has the same minimisers and gets stuck less: at a fixed point of (12) no triangle of
-            // largest dilatation may change its size.
-            run.fused_and_alternate(ConicObjective::AsapMax, watch)?;
-            run.restart(objective);
-            run.fused_and_alternate(objective, watch)?;
-        }
-        _ => run.fused_and_alternate(objective, watch)?,
     }
     let Run { problem, mut descent, .. } = run;
-    let bounded = matches!(objective, ConicObjective::ArapMax | ConicObjective::AsapMax);
-    if objective != ConicObjective::ArapMax {
+    if !measure.depends_on_scale() {
         normalize(problem, &mut descent);
     }
+    let value = descent.value();
     Ok(ConicMinimum {
-        injective_by_bound: bounded.then_some(descent.value < 1.0),
-        value: descent.value,
+        injective_by_bound: measure.proves_injectivity().then_some(value < 1.0),
+        value,
         value_before,
+        remaining: descent.remaining,
         rounds: descent.rounds,
         iterations: descent.iterations,
         outcome: descent.outcome,
@@ -167,27 +175,8 @@ pub fn minimize(
 /// A minimisation on its way.
 struct Run<'a> {
     problem: &'a mut LayoutProblem,
-    left: Option<&'a [Matrix2]>,
     options: &'a ConicOptions,
     descent: Descent,
-}
-
-impl Run<'_> {
-    fn fused_and_alternate(
-        &mut self,
-        objective: ConicObjective,
-        watch: &mut Watch<'_, '_>,
-    ) -> Result<(), Cancelled> {
-        if self.options.solver == Solver::Own {
-            self.fused(objective, watch)?;
-        }
-        self.alternate(objective, watch)
-    }
-
-    /// Goes on from the layout reached with another measure.
-    fn restart(&mut self, objective: ConicObjective) {
-        self.descent.value = objective.value(self.problem, self.left, &self.descent.z);
-    }
 }
 
 /// Scales a layout to `sigma_1 max sigma_2 min = 1`, eq. (2) for the whole mesh.
@@ -199,22 +188,4 @@ fn normalize(problem: &LayoutProblem, descent: &mut Descent) {
     if scale.is_finite() && is_flip_free(problem, &problem.space().expand(&scaled)) {
         descent.y = scaled;
     }
-}
-
-/// `A^-1` for every triangle.
-fn inverses(
-    problem: &LayoutProblem,
-    options: &ConicOptions,
-) -> Result<Option<Vec<Matrix2>>, ConicError> {
-    let Some(frames) = &options.anisotropy else { return Ok(None) };
-    let inverse = |triangle: usize| {
-        let [[a, b], [c, d]] = *frames.get(triangle).ok_or(ConicError::BadFrame { triangle })?;
-        let determinant = a * d - b * c;
-        if determinant > 0.0 && determinant.is_finite() {
-            let k = 1.0 / determinant;
-            return Ok([[d * k, -b * k], [-c * k, a * k]]);
-        }
-        Err(ConicError::BadFrame { triangle })
-    };
-    (0..problem.triangles().len()).map(inverse).collect::<Result<_, _>>().map(Some)
 }

@@ -3,10 +3,9 @@
 use super::cells::{Cones, Elimination};
 use super::cone::{Scaling, dot, largest_step, product, quotient};
 use super::element::{block_back, parts, vector_back};
-use super::interior_point::Renewal;
-use super::program::Matrix2;
+use super::program::Renewal;
+use crate::energy::Triangle;
 use crate::layout::problem::LayoutProblem;
-use crate::layout::triangle::Triangle;
 use crate::quarter::direction;
 use num_complex::Complex64;
 
@@ -14,7 +13,6 @@ use num_complex::Complex64;
 pub(super) struct Cell<const D: usize, const C: usize> {
     pub(super) frame: Complex64,
     pub(super) scale: f64,
-    pub(super) left: Option<Box<Matrix2>>,
     pub(super) epigraph: f64,
     pub(super) epigraph_step: f64,
     pub(super) elimination: Elimination,
@@ -69,7 +67,7 @@ impl Tally {
 
 impl<const D: usize, const C: usize> Cell<D, C> {
     fn parts(&self, triangle: &Triangle, z: &[Complex64]) -> [f64; 4] {
-        parts(triangle, z, self.scale, self.left.as_deref())
+        parts(triangle, z, self.scale)
     }
 
     /// Adapts frame and scale to the iterate, which stays inside: the frame is the nearest rotation, and at
@@ -131,9 +129,8 @@ pub(super) fn assemble<const D: usize, const C: usize, K: Cones<D, C>>(
         cell.elimination = normal.epigraph;
         cell.eliminated = 0.0;
         tally.corner += normal.corner;
-        let left = cell.left.as_deref();
-        block_back(t, cell.scale, left, &normal.block, block);
-        vector_back(t, cell.scale, left, &normal.border, local);
+        block_back(t, cell.scale, &normal.block, block);
+        vector_back(t, cell.scale, &normal.border, local);
     }))
 }
 
@@ -187,7 +184,7 @@ pub(super) fn correction<const D: usize, const C: usize, K: Cones<D, C>>(
         let q = std::array::from_fn(|k| adjoint.q[k] - e.row[k] * share);
         tally.corner += adjoint.bound - e.border * share;
         cell.eliminated = adjoint.epigraph;
-        vector_back(t, cell.scale, cell.left.as_deref(), &q, local);
+        vector_back(t, cell.scale, &q, local);
     }))
 }
 

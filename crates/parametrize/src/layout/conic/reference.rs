@@ -1,7 +1,7 @@
 //! The same programs by Clarabel, a general conic solver.
 
 use super::general::{Cone, run};
-use super::program::{Matrix2, Program, ProgramKind};
+use super::program::{Program, ProgramKind};
 use super::rows::{Row, Rows, part_rows};
 use super::solver::{ConicSolution, Solver, SolverOptions};
 use crate::layout::problem::LayoutProblem;
@@ -43,18 +43,12 @@ pub fn solve(
     })
 }
 
-fn scale_and_left(program: &Program, t: usize) -> (f64, Option<&Matrix2>) {
-    let scale = program.scales.as_ref().map_or(1.0, |scales| scales[t]);
-    (scale, program.left.as_ref().map(|left| &left[t]))
-}
-
 /// `(s; z)`, `(mu - s; w)`, `(Re(z conj R) - 1; w)` per triangle.
 fn stretch(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<Cone>) {
     let (n, triangles) = (problem.space().n_unknowns(), problem.triangles());
     let mut rows = Rows::new(n + 1 + triangles.len());
     for (t, triangle) in triangles.iter().enumerate() {
-        let (scale, left) = scale_and_left(program, t);
-        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, scale, left);
+        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, program.scale(t));
         let (bound, epigraph) = (Row::of(n, 1.0), Row::of(n + 1 + t, 1.0));
         let frame = program.frames[t];
         let along = z0.times(frame.re).plus(&z1.times(frame.im));
@@ -81,8 +75,7 @@ fn deviation(problem: &LayoutProblem, program: &Program) -> (Rows, Vec<Cone>) {
     let (n, triangles) = (problem.space().n_unknowns(), problem.triangles());
     let mut rows = Rows::new(n + 1);
     for (t, triangle) in triangles.iter().enumerate() {
-        let (scale, left) = scale_and_left(program, t);
-        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, scale, left);
+        let [z0, z1, w0, w1] = part_rows(problem.space(), triangle, program.scale(t));
         let frame = program.frames[t];
         rows.push(&Row::of(n, 1.0), 0.0);
         rows.push(&z0, -frame.re);

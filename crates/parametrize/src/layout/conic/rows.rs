@@ -1,9 +1,8 @@
 //! Sparse rows over the unknowns, for the general solver.
 
 use super::element::vector_back;
-use super::program::Matrix2;
+use crate::energy::Triangle;
 use crate::layout::space::LinearSpace;
-use crate::layout::triangle::Triangle;
 
 /// A linear form, columns ascending.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,16 +49,11 @@ impl Row {
 }
 
 /// The four parts of a triangle's Jacobian as forms of the unknowns.
-pub(super) fn part_rows(
-    space: &LinearSpace,
-    triangle: &Triangle,
-    scale: f64,
-    left: Option<&Matrix2>,
-) -> [Row; 4] {
+pub(super) fn part_rows(space: &LinearSpace, triangle: &Triangle, scale: f64) -> [Row; 4] {
     std::array::from_fn(|part| {
         let (mut unit, mut corners) = ([0.0; 4], [0.0; 6]);
         unit[part] = 1.0;
-        vector_back(triangle, scale, left, &unit, &mut corners);
+        vector_back(triangle, scale, &unit, &mut corners);
         let mut entries = Vec::with_capacity(6);
         for (k, &wedge) in triangle.wedges.iter().enumerate() {
             for side in 0..2 {

@@ -1,7 +1,7 @@
 //! Two solvers for one program.
 
-use super::interior_point::{self, Renewal};
-use super::program::Program;
+use super::interior_point;
+use super::program::{Program, Renewal};
 use super::reference;
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
@@ -93,7 +93,7 @@ pub struct ConicSolution {
 /// layout with its own frames does. Clarabel needs no start.
 ///
 /// # Errors
-/// [`Cancelled`]. A failure of both solvers is told by [`ConicSolution::outcome`].
+/// [`Cancelled`]. A failure of both solvers is reported by [`ConicSolution::outcome`].
 pub fn solve(
     problem: &mut LayoutProblem,
     program: &Program,

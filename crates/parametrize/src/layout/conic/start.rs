@@ -13,7 +13,7 @@ const ROOM_BELOW: f64 = 1.3;
 /// The bound exceeds what the layout needs by this factor.
 const ROOM_ABOVE: f64 = 1.2;
 /// A deviation of zero leaves a cone without inner points: this is added.
-const LEAST_DEVIATION: f64 = 1e-2;
+const SMALLEST_DEVIATION: f64 = 1e-2;
 
 /// A factor for the layout and a value of mu (of m for [`ProgramKind::Deviation`]) that make it satisfy the
 /// program with room; none if no factor does.
@@ -35,7 +35,7 @@ pub(super) fn inside(
         }
         ProgramKind::Deviation => {
             let needed = (0.5 * program.value(problem, z)).sqrt();
-            needed.is_finite().then_some((1.0, ROOM_ABOVE * needed + LEAST_DEVIATION))
+            needed.is_finite().then_some((1.0, ROOM_ABOVE * needed + SMALLEST_DEVIATION))
         }
     }
 }
@@ -50,15 +50,13 @@ pub(super) fn cells<const D: usize, const C: usize, K: Cones<D, C>>(
 ) -> Vec<Cell<D, C>> {
     let cell = |k: usize| {
         let frame = program.frames[k];
-        let scale = program.scales.as_ref().map_or(1.0, |scales| scales[k]);
-        let left = program.left.as_ref().map(|left| Box::new(left[k]));
-        let q = parts(&problem.triangles()[k], z, scale, left.as_deref());
+        let scale = program.scale(k);
+        let q = parts(&problem.triangles()[k], z, scale);
         let epigraph = K::centre(&q, bound);
         let slack = K::slack(frame, &q, epigraph, bound);
         Cell {
             frame,
             scale,
-            left,
             epigraph,
             epigraph_step: 0.0,
             elimination: Elimination::default(),

@@ -1,19 +1,23 @@
 //! Layouts that minimise the distortion one chooses, in the exact space and without flips.
 
+mod bounded;
 mod guarded;
+mod maximal;
+mod outcome;
 mod rigid;
 mod similar;
 
+pub use outcome::{ConicStats, Ending, OptimizeError, Optimized};
+
 use super::arap::{distance_to_frames, frames};
-use super::conic::{self, ConicError, ConicObjective, ConicOptions, Outcome, Solver};
-use super::energy::{Energy, SymmetricDirichlet};
+use super::conic::{ConicOptions, MaximalMeasure, Phase, Solver};
 use super::exact::ExactLayout;
 use super::newton::{NewtonOptions, NewtonSolution, Stop, minimize};
+use crate::energy::{Energy, SymmetricDirichlet};
 use crate::features::Sectors;
 use crate::progress::{Cancelled, Watch};
 use crate::quality::{Measure, summarize};
 use num_complex::Complex64;
-use seamstress_linalg::NotPositiveDefinite;
 
 /// What a layout minimises, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -39,8 +43,10 @@ pub enum Objective {
     Asap,
     /// Largest scaled ASAP energy, eq. (11).
     AsapMax,
-    /// Largest dilatation, with a scale per triangle, eq. (12).
+    /// Largest dilatation, by programs (11) and (12), which has a scale per triangle.
     Dilatation,
+    /// Largest dilatation by programs (12) alone, as printed.
+    DilatationAlternating,
     /// Largest dilatation by bisection over bounds on it (Lipman 2012).
     DilatationBisection,
 }
@@ -52,7 +58,7 @@ impl Objective {
     }
 
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::SymmetricDirichlet,
         Self::Arap,
         Self::ArapNewton,
@@ -63,6 +69,7 @@ impl Objective {
         Self::Asap,
         Self::AsapMax,
         Self::Dilatation,
+        Self::DilatationAlternating,
         Self::DilatationBisection,
     ];
 
@@ -79,6 +86,7 @@ impl Objective {
             Self::Asap => "asap",
             Self::AsapMax => "asap-max",
             Self::Dilatation => "dilatation",
+            Self::DilatationAlternating => "dilatation-alternating",
             Self::DilatationBisection => "dilatation-bisection",
         }
     }
@@ -94,7 +102,43 @@ impl Objective {
             Self::Tau | Self::TauAlternating => Some(Measure::Tau),
             Self::Asap => Some(Measure::Asap),
             Self::AsapMax => Some(Measure::AsapMax),
-            Self::Dilatation | Self::DilatationBisection => Some(Measure::Dilatation),
+            Self::Dilatation | Self::DilatationAlternating | Self::DilatationBisection => {
+                Some(Measure::Dilatation)
+            }
+        }
+    }
+
+    /// Whether it lowers the dilatation, which can be bounded instead of minimised.
+    pub fn is_of_dilatation(self) -> bool {
+        self.measure() == Some(Measure::Dilatation)
+    }
+
+    /// How conic programs minimise it; none if they do not.
+    fn phases(self) -> &'static [Phase] {
+        use MaximalMeasure::{Arap, Asap, Dilatation, Tau};
+        use Phase::{Alternating, Bisection, Fused};
+        match self {
+            Self::ArapMax => &[Fused(Arap), Alternating(Arap)],
+            Self::Tau => &[Fused(Tau), Alternating(Tau)],
+            Self::TauAlternating => &[Alternating(Tau)],
+            Self::AsapMax => &[Fused(Asap), Alternating(Asap)],
+            // (11) has the same minimisers as (12) and gets stuck less: at a fixed point of (12) no triangle of
+            // largest dilatation may change its size. From where (12) settles it may find more.
+            Self::Dilatation => &[
+                Fused(Asap),
+                Alternating(Asap),
+                Fused(Dilatation),
+                Alternating(Dilatation),
+                Fused(Asap),
+                Alternating(Asap),
+            ],
+            Self::DilatationAlternating => &[Alternating(Dilatation)],
+            Self::DilatationBisection => &[Bisection, Fused(Asap), Alternating(Asap)],
+            Self::SymmetricDirichlet
+            | Self::Arap
+            | Self::ArapNewton
+            | Self::Poisson
+            | Self::Asap => &[],
         }
     }
 }
@@ -114,100 +158,19 @@ pub struct ObjectiveOptions {
     pub tolerance: f64,
     /// The methods with conic programs.
     pub conic: ConicOptions,
+    /// With an objective of the dilatation: a bound on it, at least 1. The mean symmetric Dirichlet energy is then
+    /// minimised over the layouts that keep it, and the objective is how such a layout is found. None: the
+    /// dilatation itself is minimised.
+    pub dilatation_bound: Option<f64>,
 }
 
 impl Default for ObjectiveOptions {
     fn default() -> Self {
-        Self { max_iterations: 1000, tolerance: 1e-8, conic: ConicOptions::default() }
-    }
-}
-
-/// How a minimiser ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", tag = "kind")]
-pub enum Ending {
-    /// The objective settled.
-    Converged,
-    /// The iterations ran out, or no step lowered the objective further.
-    Stopped,
-    /// The minimiser over all layouts has flips or wrong angles; this is a layout without, near the edge of
-    /// what is allowed.
-    Guarded {
-        /// Flipped triangles of the layout that was given up.
-        flips: usize,
-    },
-    /// Nothing better than the start was found; it is returned.
-    NoGain,
-}
-
-impl std::fmt::Display for Ending {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Converged => f.write_str("converged"),
-            Self::Stopped => f.write_str("stopped before it settled"),
-            Self::Guarded { flips: 0 } => f.write_str("held at the edge of the flip-free region"),
-            Self::Guarded { flips } => write!(
-                f,
-                "held at the edge of the flip-free region: the minimiser would flip {flips} triangles"
-            ),
-            Self::NoGain => f.write_str("no gain: the start is returned"),
-        }
-    }
-}
-
-/// A layout that minimises an objective. It has no flips and the right angles if its start had.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct Optimized {
-    /// The unknowns, at the global scale of the objective's measure.
-    pub y: Vec<f64>,
-    /// The objective's figure: of its measure, or the mean squared distance to the frames.
-    pub value: f64,
-    /// The same figure before.
-    pub before: f64,
-    /// Iterations of the outer loop, those of abandoned attempts included.
-    pub iterations: usize,
-    /// How it ended.
-    pub ending: Ending,
-    /// How the conic programs were solved, if there were any.
-    pub conic: Option<ConicStats>,
-}
-
-/// How the conic programs of a layout were solved.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct ConicStats {
-    /// Programs solved.
-    pub programs: usize,
-    /// The solver of the last program.
-    pub solver: Solver,
-    /// How the own solver failed, if Clarabel had to take over.
-    pub fallback_from: Option<Outcome>,
-    /// For eq. (8) and (11): whether the bound reached, below 1, proves by itself that there is no flip.
-    pub injective_by_bound: Option<bool>,
-}
-
-/// Why there is no optimised layout.
-#[derive(Debug, thiserror::Error)]
-pub enum OptimizeError {
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// A linear system could not be set up or factored.
-    #[error(transparent)]
-    Numeric(#[from] NotPositiveDefinite),
-    /// The conic programs could not be set up.
-    #[error(transparent)]
-    Conic(ConicError),
-}
-
-impl From<ConicError> for OptimizeError {
-    fn from(error: ConicError) -> Self {
-        match error {
-            ConicError::Cancelled(cancelled) => cancelled.into(),
-            error => Self::Conic(error),
+        Self {
+            max_iterations: 1000,
+            tolerance: 1e-8,
+            conic: ConicOptions::default(),
+            dilatation_bound: None,
         }
     }
 }
@@ -242,27 +205,28 @@ pub fn optimize(
     options: &ObjectiveOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Optimized, OptimizeError> {
+    if let Some(bound) = options.dilatation_bound {
+        return bounded::optimize(sectors, layout, y, (objective, bound), options, watch);
+    }
     let figure = Figure::new(layout, &y, objective);
     let before = figure.of(layout, &y);
+    let start = y.clone();
     let found = match objective {
         Objective::SymmetricDirichlet => {
-            newton(layout, y.clone(), &SymmetricDirichlet, options, watch)?
+            newton(layout, start, &SymmetricDirichlet, options, watch)?
         }
-        Objective::Arap => rigid::local_global(sectors, layout, y.clone(), options, watch)?,
-        Objective::ArapNewton => rigid::newton_steps(layout, y.clone(), options, watch)?,
-        Objective::Poisson => rigid::poisson(sectors, layout, y.clone())?,
-        Objective::Asap => similar::asap(sectors, layout, y.clone(), options, watch)?,
-        Objective::ArapMax => conic(layout, &y, ConicObjective::ArapMax, options, watch)?,
-        Objective::Tau => conic(layout, &y, ConicObjective::Tau, options, watch)?,
-        Objective::TauAlternating => {
-            conic(layout, &y, ConicObjective::TauAlternating, options, watch)?
-        }
-        Objective::AsapMax => conic(layout, &y, ConicObjective::AsapMax, options, watch)?,
-        Objective::Dilatation => {
-            dilatation(layout, &y, ConicObjective::Dilatation, options, watch)?
-        }
-        Objective::DilatationBisection => {
-            dilatation(layout, &y, ConicObjective::DilatationBisection, options, watch)?
+        Objective::Arap => rigid::local_global(sectors, layout, start, options, watch)?,
+        Objective::ArapNewton => rigid::newton_steps(layout, start, options, watch)?,
+        Objective::Poisson => rigid::poisson(sectors, layout, start)?,
+        Objective::Asap => similar::asap(sectors, layout, start, options, watch)?,
+        Objective::ArapMax
+        | Objective::Tau
+        | Objective::TauAlternating
+        | Objective::AsapMax
+        | Objective::Dilatation
+        | Objective::DilatationAlternating
+        | Objective::DilatationBisection => {
+            maximal::minimize(layout, start, objective.phases(), options, watch)?
         }
     };
     let value = figure.of(layout, &found.y);
@@ -270,7 +234,8 @@ pub fn optimize(
     let (mut y, value, ending) =
         if is_better { (found.y, value, found.ending) } else { (y, before, Ending::NoGain) };
     figure.rescale(layout, &mut y);
-    Ok(Optimized { y, value, before, iterations: found.iterations, ending, conic: found.conic })
+    let Found { iterations, conic, .. } = found;
+    Ok(Optimized { y, value, before, iterations, ending, conic, dilatation: None })
 }
 
 /// The figure that an objective lowers.
@@ -330,46 +295,4 @@ fn newton(
         minimize(layout.problem_mut(), y, energy, &options, watch)?;
     let ending = if stop == Stop::Converged { Ending::Converged } else { Ending::Stopped };
     Ok(Found::new(y, iterations, ending))
-}
-
-fn conic(
-    layout: &mut ExactLayout,
-    y: &[f64],
-    objective: ConicObjective,
-    options: &ObjectiveOptions,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Found, OptimizeError> {
-    let problem = layout.problem_mut();
-    let found = conic::minimize(problem, y.to_vec(), objective, &options.conic, watch)?;
-    let ending = match found.outcome {
-        Outcome::Solved => Ending::Converged,
-        _ => Ending::Stopped,
-    };
-    let stats = ConicStats {
-        programs: found.rounds,
-        solver: found.solver_used,
-        fallback_from: found.fallback_from,
-        injective_by_bound: found.injective_by_bound,
-    };
-    let conic = Some(stats);
-    Ok(Found { y: found.y, iterations: found.iterations, ending, conic })
-}
-
-/// A method for the dilatation, then programs (11) from where it settles: their measure
-/// `(K - 1)^2 / (K^2 + 1)` orders layouts as K does, and they may find more.
-fn dilatation(
-    layout: &mut ExactLayout,
-    y: &[f64],
-    objective: ConicObjective,
-    options: &ObjectiveOptions,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Found, OptimizeError> {
-    let first = conic(layout, y, objective, options, watch)?;
-    let second = conic(layout, &first.y, ConicObjective::AsapMax, options, watch)?;
-    let conic = first.conic.zip(second.conic).map(|(a, b)| ConicStats {
-        programs: a.programs + b.programs,
-        fallback_from: a.fallback_from.or(b.fallback_from),
-        ..b
-    });
-    Ok(Found { iterations: first.iterations + second.iterations, conic, ..second })
 }

@@ -1,0 +1,138 @@
+//! What the polish of tau promises: energy within its bound, whatever it starts from.
+#![allow(clippy::unwrap_used, reason = "helpers of a test")]
+
+mod common;
+
+use common::{mesh_of, surface, unwatched};
+use seamstress_mesh::features::{EdgeSet, sharp_edges};
+use seamstress_mesh::soup::TriangleSoup;
+use seamstress_parametrize::energy::SymmetricDirichlet;
+use seamstress_parametrize::features::Sectors;
+use seamstress_parametrize::layout::exact::ExactLayout;
+use seamstress_parametrize::layout::newton::NewtonOptions;
+use seamstress_parametrize::layout::polish::{PolishOptions, Polished, polish};
+use seamstress_parametrize::{MapOptions, make_aligned_map, make_map};
+use seamstress_testkit as kit;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+fn shapes() -> Vec<TriangleSoup> {
+    vec![
+        kit::icosphere(2),
+        kit::bumpy(&kit::torus(14, 9, 2.0, 0.8), 0.1, 1),
+        kit::saddle(6),
+        kit::subdivide(&kit::double_torus()),
+    ]
+}
+
+/// A layout whose worst triangles are sharpened without regard to the energy, and one of minimum energy.
+fn sharpened_and_relaxed(soup: &TriangleSoup) -> (ExactLayout, Vec<f64>, Vec<f64>) {
+    let (mesh, metric) = surface(soup);
+    let options = MapOptions { polish: None, ..MapOptions::default() };
+    let mut go_on = |_| ControlFlow::Continue(());
+    let made = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap();
+    let (mut layout, y) = ExactLayout::from_map(&mesh, &metric, &made.map).unwrap();
+    let settle = NewtonOptions { max_iterations: 60, tolerance: 1e-9 };
+    let relaxed =
+        unwatched(|watch| layout.minimize(y.clone(), &SymmetricDirichlet, &settle, watch));
+    (layout, y, relaxed.unwrap().y)
+}
+
+fn polished(
+    layout: &mut ExactLayout,
+    relaxed: &[f64],
+    start: &[f64],
+    options: &PolishOptions,
+) -> Polished {
+    unwatched(|watch| polish(layout, relaxed, start, options, watch)).unwrap()
+}
+
+const RISES: [f64; 5] = [0.0, 1e-5, 0.0005, 0.003, 0.02];
+
+#[test]
+fn the_energy_stays_within_its_bound_wherever_the_start_is() {
+    for soup in shapes() {
+        let (mesh, _) = surface(&soup);
+        let (mut layout, start, relaxed) = sharpened_and_relaxed(&soup);
+        let (minimum, loosest) = layout.distortion(&relaxed);
+        let (energy, tau) = layout.distortion(&start);
+        for max_energy_rise in RISES {
+            let options = PolishOptions { max_energy_rise, time_limit: None };
+            let found = polished(&mut layout, &relaxed, &start, &options).y;
+            let (found_energy, found_tau) = layout.distortion(&found);
+            let most = (1.0 + max_energy_rise) * minimum;
+            assert!(found_energy <= most, "{max_energy_rise}: {found_energy} {most}");
+            assert!(layout.defects(&Sectors::unaligned(&mesh), &found).none());
+            // No worse than what was known before.
+            let known = if energy <= most { tau.min(loosest) } else { loosest };
+            assert!(found_tau <= known, "{max_energy_rise}: {found_tau} {known}");
+        }
+    }
+}
+
+#[test]
+fn without_a_rise_the_minimum_of_the_energy_stays() {
+    let (mut layout, start, relaxed) = sharpened_and_relaxed(&kit::icosphere(2));
+    assert!(layout.distortion(&start).0 > layout.distortion(&relaxed).0);
+    let options = PolishOptions { max_energy_rise: 0.0, time_limit: None };
+    let found = polished(&mut layout, &relaxed, &start, &options);
+    assert_eq!((found.y, found.iterations), (relaxed, 0));
+}
+
+#[test]
+fn a_larger_rise_lowers_tau() {
+    for soup in shapes() {
+        let (mut layout, start, relaxed) = sharpened_and_relaxed(&soup);
+        let mut last = f64::INFINITY;
+        for max_energy_rise in RISES {
+            let options = PolishOptions { max_energy_rise, time_limit: None };
+            let found = polished(&mut layout, &relaxed, &start, &options).y;
+            let tau = layout.distortion(&found).1;
+            assert!(tau <= last * (1.0 + 1e-3), "{max_energy_rise}: {tau} {last}");
+            last = tau;
+        }
+    }
+}
+
+#[test]
+fn without_time_the_better_of_what_is_known_stays() {
+    for soup in shapes() {
+        let (mut layout, start, relaxed) = sharpened_and_relaxed(&soup);
+        let minimum = layout.distortion(&relaxed).0;
+        for max_energy_rise in [1e-9, 1.0] {
+            let options = PolishOptions { max_energy_rise, time_limit: Some(Duration::ZERO) };
+            let found = polished(&mut layout, &relaxed, &start, &options).y;
+            assert!(found == start || found == relaxed);
+            assert!(layout.distortion(&found).0 <= (1.0 + max_energy_rise) * minimum);
+        }
+    }
+}
+
+/// Mean symmetric Dirichlet energy of a map with its energy allowed to rise by a part.
+fn energy_of_map(soup: &TriangleSoup, features: &EdgeSet, max_energy_rise: f64) -> f64 {
+    let polish = Some(PolishOptions { max_energy_rise, time_limit: None });
+    let options = MapOptions { polish, ..MapOptions::default() };
+    let mut go_on = |_| ControlFlow::Continue(());
+    let mesh = mesh_of(soup);
+    let made = make_aligned_map(&mesh, &soup.positions, features, &options, &mut go_on).unwrap();
+    made.distortion.symmetric_dirichlet
+}
+
+#[test]
+fn maps_keep_the_bound_with_and_without_features() {
+    let bracket = kit::bumpy(&kit::subdivide(&kit::l_bracket()), 0.03, 3);
+    let creases = sharp_edges(&mesh_of(&bracket), &bracket.positions, 40f64.to_radians());
+    let mut cases = vec![(bracket, creases)];
+    cases.extend(shapes().into_iter().map(|soup| {
+        let none = EdgeSet::new(&mesh_of(&soup), []);
+        (soup, none)
+    }));
+    for (soup, features) in cases {
+        let minimum = energy_of_map(&soup, &features, 0.0);
+        for rise in [1e-4, 0.003] {
+            let energy = energy_of_map(&soup, &features, rise);
+            // The result is scaled and moved once more.
+            assert!(energy <= (1.0 + rise) * minimum * (1.0 + 1e-12), "{rise}: {energy} {minimum}");
+        }
+    }
+}
