@@ -3,9 +3,9 @@
 use crate::energy::Triangle;
 use seamstress_mesh::{Face, FaceData, TriMesh};
 
-/// A stretch per face that counts as no distortion: frames `A` of section 5 of the seed.
+/// A stretch per face that counts as no distortion: the frames `A` of Levi 2021, suppl. sec. 5.
 ///
-/// The seed measures `|A^-1 Df - R|` with `A` in the plane. Here the stretch `W` acts on the surface and
+/// Levi 2021 measures `|A^-1 Df - R|` with `A` in the plane. Here the stretch `W` acts on the surface and
 /// `|Df W^-1 - R|` is measured, with `A = R W R^T`: both vanish for the same maps, but `W` needs no turning
 /// at seams. Every objective works with it, since `Df W^-1` is the Jacobian from the stretched triangle.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,7 +10,7 @@ use seamstress_parallel::prelude::*;
 const SHIFT: f64 = 1e-10;
 const REFINEMENTS: usize = 2;
 
-/// Rotation of a triangle's Jacobian (polar decomposition): the *local step*, eq. (4) of the seed.
+/// Rotation of a triangle's Jacobian (polar decomposition): the *local step*, eq. (4) of Levi 2021.
 pub fn frame(triangle: &Triangle, z: &[Complex64]) -> Complex64 {
     direction(triangle.jacobian(z).similar)
 }
