@@ -54,8 +54,7 @@ pub struct Inspection {
 pub(crate) struct Parts {
     /// The file as it was named.
     pub(crate) input: Option<String>,
-    /// The polygons as given, whose sides files of features name.
-    #[cfg(feature = "io")]
+    /// The polygons as given, whose sides files of features name, and by which quads are compared.
     pub(crate) polygons: Polygons,
     /// Segments of the `l` elements of an OBJ file.
     pub(crate) lines: Vec<[u32; 2]>,
@@ -114,7 +113,6 @@ impl Inspection {
         let triangulation = soup::triangulate(&positions, polygons.iter());
         let mut parts = Parts {
             input: given.input,
-            #[cfg(feature = "io")]
             polygons,
             lines: given.lines,
             n_input_vertices: n_read[0],
