@@ -13,10 +13,10 @@ use seamstress_parametrize::cut::{
     turned_vertices, unfold,
 };
 use seamstress_parametrize::energy::{
-    Energy, Jacobian, SymmetricDirichlet, Triangle, largest_step, triangles,
+    Energy, Jacobian, SymmetricDirichlet, Triangle, is_positive, largest_step, triangles,
 };
 use seamstress_parametrize::layout::arap::frames;
-use seamstress_parametrize::layout::exact::{ExactLayout, is_positive};
+use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::homotopy::{Continuation, angle_sums, barrier, continuation};
 use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_out, retree};
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};

@@ -7,7 +7,9 @@ use common::{mapped_with, surface, unwatched};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::MapOptions;
-use seamstress_parametrize::cut::{DualTree, Unfolding, curvature_weight, frames_of_angles};
+use seamstress_parametrize::cut::{
+    DualTree, MatchedCut, Unfolding, curvature_weight, frames_of_angles,
+};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::layout::conic::{
     Outcome, Program, ProgramKind, SolverOptions, reference,
@@ -41,7 +43,7 @@ fn round(soup: &TriangleSoup, options: &MixedIntegerOptions) -> (Vec<i32>, Mixed
 fn enumerated(soup: &TriangleSoup) -> (f64, Vec<i32>) {
     let (mesh, metric) = surface(soup);
     let sectors = Sectors::unaligned(&mesh);
-    let mut matched = cut(&mesh, &metric).nearest();
+    let mut matched = MatchedCut::nearest(cut(&mesh, &metric));
     let frames = frames_of_angles(&mesh, &metric, &metric.angle, &matched.unfolding.tree);
     let seams = matched.matching.len();
     let mut best = (f64::INFINITY, Vec::new());
@@ -147,7 +149,7 @@ fn what_is_open_when_time_is_up_is_rounded_to_the_nearest() {
     let (matching, stats) = round(&soup, &options);
     assert_eq!((stats.left_to_nearest, stats.nodes()), (matching.len(), 0));
     let (mesh, metric) = surface(&soup);
-    assert_eq!(matching, cut(&mesh, &metric).nearest().matching);
+    assert_eq!(matching, MatchedCut::nearest(cut(&mesh, &metric)).matching);
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn cut(soup: &TriangleSoup) -> Unfolding {
 fn the_energy_is_that_of_the_frames_and_below_that_of_rounding_at_once() {
     for soup in [kit::bumpy(&kit::icosphere(3), 0.1, 1), kit::random_surface(3)] {
         let (mesh, metric) = surface(&soup);
-        let at_once = cut(&soup).nearest();
+        let at_once = MatchedCut::nearest(cut(&soup));
         let (FramedCut { matched, frames }, stats) =
             unwatched(|watch| smooth_field(&mesh, &metric, cut(&soup), watch)).unwrap();
         assert_eq!(frames.len(), mesh.n_faces());

@@ -1,7 +1,7 @@
 //! Triangulating a simple polygon by cutting off its corners one by one.
 
+use super::edges::Edges;
 use super::geometry::{Local, shape};
-use super::triangulate::Edges;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 

@@ -12,6 +12,7 @@
 mod check;
 mod connectivity;
 mod ear_clipping;
+mod edges;
 mod facts;
 mod fault;
 mod geometry;

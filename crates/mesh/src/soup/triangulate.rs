@@ -1,10 +1,10 @@
 //! Splitting polygons into triangles.
 
 use super::ear_clipping::clip_ears;
+use super::edges::Edges;
 use super::fault::Fault;
 use super::geometry::{Local, unit_normal};
 use super::{MAX_FACES, MAX_VERTICES};
-use std::collections::HashSet;
 
 /// Triangles made from polygons.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -128,35 +128,6 @@ fn first_repeated(polygon: &[u32]) -> Option<u32> {
     let mut sorted = polygon.to_vec();
     sorted.sort_unstable();
     sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
-}
-
-/// The edges of a mesh in the making, as pairs of vertices.
-#[derive(Debug, Default)]
-pub(super) struct Edges(HashSet<[u32; 2]>);
-
-impl Edges {
-    pub(super) fn contain(&self, a: u32, b: u32) -> bool {
-        self.0.contains(&[a.min(b), a.max(b)])
-    }
-
-    fn add(&mut self, a: u32, b: u32) {
-        self.0.insert([a.min(b), a.max(b)]);
-    }
-
-    fn add_triangle(&mut self, [a, b, c]: [u32; 3]) {
-        self.add(a, b);
-        self.add(b, c);
-        self.add(c, a);
-    }
-
-    fn add_sides(&mut self, polygons: &[&[u32]]) {
-        for polygon in polygons {
-            let next = polygon.iter().cycle().skip(1);
-            for (&a, &b) in polygon.iter().zip(next) {
-                self.add(a, b);
-            }
-        }
-    }
 }
 
 /// A polygon split into triangles of its corners.

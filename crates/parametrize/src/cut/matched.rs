@@ -53,7 +53,13 @@ fn in_gauge(frames: &[Complex64], gauge: &FaceData<i32>) -> Vec<Complex64> {
 impl MatchedCut {
     /// Cuts along a dual tree; the matchings are the nearest integers.
     pub fn new(sectors: &Sectors<'_>, metric: &Metric, tree: DualTree) -> Self {
-        Unfolding::new(sectors, metric, tree).nearest()
+        Self::nearest(Unfolding::new(sectors, metric, tree))
+    }
+
+    /// The nearest integer for every rotation of an unfolding.
+    pub fn nearest(unfolding: Unfolding) -> Self {
+        let matching = unfolding.isometric.iter().map(|r| r.round() as i32).collect();
+        Self { unfolding, matching }
     }
 
     /// The same matchings over another metric of the same mesh.

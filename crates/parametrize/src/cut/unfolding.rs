@@ -1,6 +1,6 @@
 //! A mesh cut along every edge that a dual tree does not cross, and unfolded.
 
-use super::{Cut, DualTree, MatchedCut, flatter_end, isometric};
+use super::{Cut, DualTree, flatter_end, isometric};
 use crate::features::Sectors;
 use num_complex::Complex64;
 use seamstress_mesh::{Halfedge, Metric, VertexData};
@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A slit mesh cut along every edge that a dual tree does not cross and laid out in the plane without distortion:
 /// its seams turn by real numbers of quarter turns. Rounding gives each an integer, which makes it a
-/// [`MatchedCut`].
+/// [`MatchedCut`](super::MatchedCut).
 ///
 /// The rotation of a seam leads from its left to its right image; that of an aligned half-edge from its
 /// image to the u axis, which is its image on the ground: an edge of direction `a` quarters has rotation
@@ -47,12 +47,6 @@ impl Unfolding {
     /// Positions of the wedges in the plane, in units of the metric.
     pub fn positions(&self, sectors: &Sectors<'_>, metric: &Metric) -> Vec<Complex64> {
         isometric::unfold(sectors.slit(), metric, &self.tree, &self.cut)
-    }
-
-    /// With the nearest integer for every rotation.
-    pub fn nearest(self) -> MatchedCut {
-        let matching = self.isometric.iter().map(|r| r.round() as i32).collect();
-        MatchedCut { unfolding: self, matching }
     }
 
     /// Index of every sector, in quarters, for rotations `r` (any reals):

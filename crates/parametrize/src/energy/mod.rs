@@ -14,8 +14,8 @@ pub use dirichlet::{PowerOfDirichlet, SymmetricDirichlet};
 pub use distance::{Arap, Asap, Guarded};
 pub use hessian::ProjectedHessian;
 pub use jacobian::Jacobian;
-pub(crate) use triangle::{CHUNK, smallest_positive_root};
-pub use triangle::{Triangle, at_corner, largest_step, sum_over, triangles};
+pub(crate) use triangle::{CHUNK, extremes, smallest_positive_root};
+pub use triangle::{Triangle, at_corner, is_positive, largest_step, sum_over, triangles};
 pub use untangling::Untangling;
 pub use window::Window;
 

@@ -93,6 +93,30 @@ pub fn sum_over(triangles: &[Triangle], value: impl Fn(&Triangle) -> f64 + Sync)
     parts.iter().sum()
 }
 
+/// The largest first and the smallest second value of all triangles.
+pub(crate) fn extremes(
+    triangles: &[Triangle],
+    values: impl Fn(usize, &Triangle) -> (f64, f64) + Sync,
+) -> (f64, f64) {
+    let none = (f64::NEG_INFINITY, f64::INFINITY);
+    let join = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.min(b.1));
+    let of_chunks: Vec<(f64, f64)> = triangles
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(c, chunk)| {
+            let each = chunk.iter().enumerate().map(|(k, t)| values(c * CHUNK + k, t));
+            each.fold(none, join)
+        })
+        .collect();
+    of_chunks.into_iter().fold(none, join)
+}
+
+/// Exact orientation test of a triangle in the plane.
+pub fn is_positive(corners: [Complex64; 3]) -> bool {
+    let [a, b, c] = corners.map(|z| robust::Coord { x: z.re, y: z.im });
+    robust::orient2d(a, b, c) > 0.0
+}
+
 /// The largest step along `dz` before some triangle's area vanishes; infinite if none does.
 pub fn largest_step(triangles: &[Triangle], z: &[Complex64], dz: &[Complex64]) -> f64 {
     let step = |t: &Triangle| {

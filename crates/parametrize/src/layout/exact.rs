@@ -2,13 +2,12 @@
 
 use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
-use super::conic::program::extremes;
 use super::homotopy::angle_sums;
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
 use super::space::seamless_space;
 use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
-use crate::energy::{Energy, triangles};
+use crate::energy::{Energy, extremes, is_positive, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
@@ -346,10 +345,4 @@ impl ExactLayout {
         wrong_angles.dedup();
         Defects { flips: slit.faces().filter(flipped).collect(), wrong_angles }
     }
-}
-
-/// Exact orientation test of a triangle in the plane.
-pub fn is_positive(corners: [Complex64; 3]) -> bool {
-    let [a, b, c] = corners.map(|z| robust::Coord { x: z.re, y: z.im });
-    robust::orient2d(a, b, c) > 0.0
 }

@@ -2,7 +2,8 @@
 
 use super::consistent::consistent_rounding;
 use super::domain::Domain;
-use super::round::{repaired, round};
+use super::round::round;
+use super::start::repaired;
 use super::{MapOptions, MethodError, Start};
 use crate::layout::exact::Defects;
 use crate::layout::ladder::{self, LayoutEffort, SeamlessLayout};

@@ -1,7 +1,6 @@
 //! What a map starts from, and the matchings it leads to.
 
 use super::domain::Domain;
-use super::round::repaired;
 use super::{MapError, MapOptions, MethodError};
 use crate::consistency::{
     AngleNorm, ConsistencyOptions, consistent_cut, lifted_angles, matched_by_angles,
@@ -14,7 +13,7 @@ use crate::field::{
 use crate::layout::exact::Defects;
 use crate::map::{Violation, Violations};
 use crate::progress::Watch;
-use crate::rounding::{Rounding, RoundingStats, fix_holonomy, round};
+use crate::rounding::{Repair, Rounding, RoundingStats, fix_holonomy, repair, round};
 use seamstress_mesh::{Component, TriMesh};
 
 /// What a map starts from.
@@ -151,4 +150,22 @@ fn matchings_of_map(
     let mut rounding = Rounding::given(FramedCut { matched, frames });
     rounding.stats.shifted_seams = consistent.stats.changed_matchings;
     Ok(rounding)
+}
+
+/// With indices that the triangles can make. At aligned edges, where dropping an edge is the better way out, the
+/// sectors that cannot be repaired are defects.
+///
+/// # Errors
+/// Those sectors.
+pub(super) fn repaired(domain: &Domain<'_>, rounding: Rounding) -> Result<Rounding, Defects> {
+    let Rounding { mut start, stats } = rounding;
+    let Repair { matched, shifts, hopeless } =
+        repair(&domain.sectors, &domain.metric, start.matched);
+    if domain.any_aligned() && !hopeless.is_empty() {
+        let wrong_angles = hopeless.into_iter().map(|s| domain.sectors.vertex(s)).collect();
+        return Err(Defects { flips: Vec::new(), wrong_angles });
+    }
+    start.matched = matched;
+    let shifted_seams = stats.shifted_seams + shifts;
+    Ok(Rounding { start, stats: RoundingStats { shifted_seams, ..stats } })
 }

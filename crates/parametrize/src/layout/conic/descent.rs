@@ -2,8 +2,7 @@
 
 use super::measure::MaximalMeasure;
 use super::solver::{ConicSolution, Outcome, Solver};
-use crate::energy::largest_step;
-use crate::layout::exact::is_positive;
+use crate::energy::{is_positive, largest_step};
 use crate::layout::problem::LayoutProblem;
 use num_complex::Complex64;
 

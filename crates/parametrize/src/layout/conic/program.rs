@@ -1,9 +1,9 @@
 //! The convex program of one global step: its data, and its value at a layout.
 
-use crate::energy::{CHUNK, Jacobian, Triangle};
+pub(super) use crate::energy::extremes;
+use crate::energy::{Jacobian, Triangle};
 use crate::layout::problem::LayoutProblem;
 use num_complex::Complex64;
-use seamstress_parallel::prelude::*;
 
 /// What is bounded over all triangles. With z and w the similarity and anti-similarity parts of a
 /// triangle's (scaled) Jacobian and R its frame, the Jacobian's singular values are `|z| + |w|` and
@@ -73,22 +73,4 @@ impl Program {
             ProgramKind::Deviation => largest,
         }
     }
-}
-
-/// The largest first and the smallest second value of all triangles.
-pub(in crate::layout) fn extremes(
-    triangles: &[Triangle],
-    values: impl Fn(usize, &Triangle) -> (f64, f64) + Sync,
-) -> (f64, f64) {
-    let none = (f64::NEG_INFINITY, f64::INFINITY);
-    let join = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.min(b.1));
-    let of_chunks: Vec<(f64, f64)> = triangles
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(c, chunk)| {
-            let each = chunk.iter().enumerate().map(|(k, t)| values(c * CHUNK + k, t));
-            each.fold(none, join)
-        })
-        .collect();
-    of_chunks.into_iter().fold(none, join)
 }
