@@ -1,9 +1,9 @@
 //! Algorithm 1 of Levi 2021, suppl.: global steps by a conic program, local steps by polar decomposition.
 
 use super::Run;
+use super::dispatch::solve;
 use super::measure::MaximalMeasure;
 use super::settling::Settling;
-use super::solver::solve;
 use crate::progress::{Cancelled, Watch};
 
 impl Run<'_> {

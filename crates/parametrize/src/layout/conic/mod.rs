@@ -5,6 +5,7 @@ mod bisection;
 mod cells;
 mod cone;
 mod descent;
+mod dispatch;
 mod element;
 mod fused;
 mod general;
@@ -18,9 +19,10 @@ mod settling;
 pub mod solver;
 mod start;
 
+pub use dispatch::solve;
 pub use measure::MaximalMeasure;
 pub use program::{Program, ProgramKind, Renewal};
-pub use solver::{ConicSolution, Outcome, Solver, SolverOptions, solve};
+pub use solver::{ConicSolution, Outcome, Solver, SolverOptions};
 
 use super::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
