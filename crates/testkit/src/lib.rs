@@ -30,7 +30,7 @@ pub use modify::{
 };
 pub use patches::{annulus, cylinder, disk_grid, fan, graph, monkey_saddle, saddle};
 pub use quads::{QuadSoup, random_quads};
-pub use random::random_surface;
+pub use random::{random_surface, small_sphere};
 pub use rng::Rng;
 pub use solids::{crown, cube, icosahedron, icosphere, octahedron, tetrahedron, uv_sphere};
 pub use tori::{seven_vertex_torus, torus};

@@ -2,7 +2,7 @@
 
 use crate::modify::{bumpy, relabel, stretch, subdivide, with_boundaries};
 use crate::rng::Rng;
-use crate::{icosphere, random_flips, slab_with_holes, torus};
+use crate::{icosphere, random_flips, slab_with_holes, torus, uv_sphere};
 use seamstress_mesh::soup::TriangleSoup;
 
 /// A surface in one piece of genus 0 to 3 with 0 to 3 boundary loops and 100 to 2000 faces:
@@ -23,6 +23,14 @@ pub fn random_surface(seed: u64) -> TriangleSoup {
     let n_flips = rng.below(surface.faces.len());
     surface = random_flips(&surface, n_flips, rng.bits());
     relabel(&with_boundaries(&surface, n_loops, rng.bits()), rng.bits())
+}
+
+/// A sphere of 20 vertices with random positions, valences and order.
+#[must_use]
+pub fn small_sphere(seed: u64) -> TriangleSoup {
+    let mut rng = Rng::new(seed);
+    let sphere = random_flips(&uv_sphere(6, 4), rng.below(60), rng.bits());
+    relabel(&bumpy(&sphere, 0.5 * rng.unit(), rng.bits()), rng.bits())
 }
 
 /// A slab of 256 to 1600 faces: fine enough for three holes.

@@ -2,9 +2,9 @@
 
 use crate::markdown::Table;
 use crate::meshes::{Mesh, Selection};
-use crate::output::Section;
+use crate::output::{Section, progress};
 use crate::process::Clock;
-use seamstress_mesh::{Metric, TriMesh, components::components};
+use seamstress_mesh::{HalfedgeData, Metric, TriMesh, components::components};
 use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut,
 };
@@ -12,29 +12,32 @@ use seamstress_parametrize::cut::{DualTree, curvature_weight};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::progress::Watch;
 use seamstress_parametrize::rounding::MatchedCut;
-use seamstress_testkit::Rng;
+use seamstress_testkit::{Rng, small_sphere};
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
 
 /// Consistency: the cost and quality of consistent matchings
 ///
 /// Every matching is rounded at once to the integer nearest to the surface's own rotation; all are integer
-/// variables. Columns: vertices whose index no triangles can have at first; cones before and after; CPU
-/// seconds, objective and its lower bound in the l2 norm; CPU seconds and objective in the l1 norm; the
-/// objective of a long local search, if one was asked for, and how much lower it is.
+/// variables. Columns: vertices whose index no triangles can have at first; cones before and after; the norm; the
+/// objective after local moves alone, and CPU seconds; after the search with the default budget, and CPU seconds; the
+/// lower bound; the gap between objective and bound, as a share of the objective; whether the objective is proven
+/// minimal. Then the same for small spheres with random positions, valences and noise on their angles, of which the
+/// optimum is known: by how much local moves, and the search, end above it.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     selection: Selection,
 
-    /// Look for better indices for so many seconds: from the best ones with some random matchings changed
-    #[arg(long, value_name = "SECONDS")]
-    search: Option<f64>,
+    /// Random spheres of 20 vertices for each norm and noise
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    spheres: u64,
 }
 
-/// Random matchings that a step of the long search changes, at most.
-const KICKS: usize = 8;
+/// Noise on the angles of the spheres, radians.
+const NOISES: [f64; 3] = [0.0, 0.3, 0.6];
+/// Excess over the optimum that counts as none: proofs are good to a part in ten million.
+const NONE: f64 = 1e-6;
 
 /// Makes the matchings of every mesh consistent; passes if that always succeeds.
 pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
@@ -44,27 +47,32 @@ pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
         "impossible",
         "cones",
         "cones after",
-        "l2 CPU s",
-        "objective",
-        "bound",
-        "l1 CPU s",
-        "objective",
+        "norm",
+        "local moves",
+        "CPU s",
         "search",
-        "lower by",
+        "CPU s",
+        "bound",
+        "gap",
+        "proven",
     ]);
     let failures = args.selection.survey(|subject| {
-        let mut cells = vec![subject.name.clone(), subject.mesh.connectivity.n_faces().to_string()];
-        cells.extend(measure_mesh(&subject.mesh, args.search)?);
-        table.report(cells);
+        let start = vec![subject.name.clone(), subject.mesh.connectivity.n_faces().to_string()];
+        for cells in measure_mesh(&subject.mesh)? {
+            table.report([start.clone(), cells].concat());
+        }
         Ok(())
     })?;
-    Ok(Section::new(table, &failures))
+    let spheres = measure_spheres(args.spheres)?;
+    let text = format!("{table}\nSpheres of 20 vertices:\n\n{spheres}");
+    Ok(Section::new(text, &failures))
 }
 
 /// One component with its naively rounded matchings.
 struct Piece {
     mesh: TriMesh,
     metric: Metric,
+    angles: HalfedgeData<f64>,
     naive: MatchedCut,
 }
 
@@ -75,47 +83,47 @@ struct Solved {
     objective: f64,
     bound: f64,
     impossible: usize,
-    cuts: Vec<MatchedCut>,
+    cones: usize,
+    optimal: bool,
 }
 
-fn measure_mesh(mesh: &Mesh, search: Option<f64>) -> Result<Vec<String>, ConsistencyError> {
+/// A row for each norm.
+fn measure_mesh(mesh: &Mesh) -> Result<Vec<Vec<String>>, ConsistencyError> {
     let pieces: Vec<Piece> = components(&mesh.connectivity)
         .unwrap_or_default()
         .into_iter()
         .map(|piece| {
             let positions: Vec<_> = piece.vertices.iter().map(|v| mesh.positions[v.at()]).collect();
-            Piece::new(piece.mesh, &positions)
+            let metric = Metric::from_positions(&piece.mesh, &positions);
+            Piece::new(piece.mesh, metric)
         })
         .collect();
-    let [squares, absolute] = [AngleNorm::L2, AngleNorm::L1].map(|norm| solve(&pieces, norm));
-    let (squares, absolute) = (squares?, absolute?);
-    let cones = |cuts: &[&MatchedCut]| -> usize {
-        pieces.iter().zip(cuts).map(|(piece, cut)| piece.cones(cut)).sum()
+    let before: usize = pieces.iter().map(|piece| piece.cones(&piece.naive)).sum();
+    let row = |(norm, name): (AngleNorm, &str)| {
+        let local = solve(&pieces, &ConsistencyOptions { norm, work: 0, ..Default::default() })?;
+        let found = solve(&pieces, &ConsistencyOptions { norm, ..Default::default() })?;
+        Ok(vec![
+            found.impossible.to_string(),
+            before.to_string(),
+            found.cones.to_string(),
+            name.to_owned(),
+            format!("{:.4}", local.objective),
+            format!("{:.2}", local.seconds),
+            format!("{:.4}", found.objective),
+            format!("{:.2}", found.seconds),
+            format!("{:.4}", found.bound),
+            format!("{:.2} %", 100.0 * (1.0 - found.bound / found.objective)),
+            if found.optimal { "yes" } else { "no" }.to_owned(),
+        ])
     };
-    let before: Vec<&MatchedCut> = pieces.iter().map(|piece| &piece.naive).collect();
-    let searched = search.map(|seconds| searched(&pieces, &squares, seconds)).transpose()?;
-    let shown =
-        |x: Option<f64>, decimals: usize| x.map_or("-".to_owned(), |x| format!("{x:.decimals$}"));
-    Ok(vec![
-        squares.impossible.to_string(),
-        cones(&before).to_string(),
-        cones(&squares.cuts.iter().collect::<Vec<_>>()).to_string(),
-        format!("{:.2}", squares.seconds),
-        format!("{:.4}", squares.objective),
-        format!("{:.4}", squares.bound),
-        format!("{:.2}", absolute.seconds),
-        format!("{:.3}", absolute.objective),
-        shown(searched, 4),
-        searched.map_or("-".into(), |x| format!("{:.2} %", 100.0 * (1.0 - x / squares.objective))),
-    ])
+    [(AngleNorm::L2, "l2"), (AngleNorm::L1, "l1")].into_iter().map(row).collect()
 }
 
 impl Piece {
-    fn new(mesh: TriMesh, positions: &[[f64; 3]]) -> Self {
-        let metric = Metric::from_positions(&mesh, positions);
+    fn new(mesh: TriMesh, metric: Metric) -> Self {
         let tree = DualTree::lightest(&mesh, curvature_weight(&mesh, &metric));
         let naive = MatchedCut::new(&Sectors::unaligned(&mesh), &metric, tree);
-        Self { mesh, metric, naive }
+        Self { mesh, angles: metric.angle.clone(), metric, naive }
     }
 
     fn cones(&self, matched: &MatchedCut) -> usize {
@@ -125,55 +133,86 @@ impl Piece {
 
     fn consistent(
         &self,
-        matched: &MatchedCut,
-        norm: AngleNorm,
+        options: &ConsistencyOptions,
     ) -> Result<(MatchedCut, Consistent), ConsistencyError> {
         let mut go_on = |_| ControlFlow::Continue(());
         let mut watch = Watch::new(&mut go_on, 0, 1);
-        let options = ConsistencyOptions { norm, ..Default::default() };
-        let angles = &self.metric.angle;
-        consistent_cut(&self.mesh, &self.metric, matched, angles, &options, &mut watch)
+        consistent_cut(&self.mesh, &self.metric, &self.naive, &self.angles, options, &mut watch)
     }
 }
 
-fn solve(pieces: &[Piece], norm: AngleNorm) -> Result<Solved, ConsistencyError> {
-    let mut all = Solved::default();
+fn solve(pieces: &[Piece], options: &ConsistencyOptions) -> Result<Solved, ConsistencyError> {
+    let mut all = Solved { optimal: true, ..Solved::default() };
     let clock = Clock::start();
     for piece in pieces {
-        let (cut, found) = piece.consistent(&piece.naive, norm)?;
+        let (cut, found) = piece.consistent(options)?;
         all.objective += found.objective;
         all.bound += found.lower_bound;
         all.impossible += found.stats.impossible_units;
-        all.cuts.push(cut);
+        all.optimal &= found.optimal;
+        all.cones += piece.cones(&cut);
     }
     all.seconds = clock.seconds();
     Ok(all)
 }
 
-/// The lowest sum of squares that solves from changed matchings find, all pieces together; the time is
-/// shared by their faces.
-fn searched(pieces: &[Piece], first: &Solved, seconds: f64) -> Result<f64, ConsistencyError> {
-    let faces: usize = pieces.iter().map(|piece| piece.mesh.n_faces()).sum();
-    let mut rng = Rng::new(1);
-    let mut total = 0.0;
-    for (piece, start) in pieces.iter().zip(&first.cuts) {
-        let share = seconds * piece.mesh.n_faces() as f64 / faces as f64;
-        let limit = Duration::try_from_secs_f64(share).unwrap_or(Duration::ZERO);
-        let begun = Instant::now();
-        let (mut best, found) = piece.consistent(start, AngleNorm::L2)?;
-        let mut lowest = found.objective;
-        while begun.elapsed() < limit && !best.matching.is_empty() {
-            let mut kicked = best.clone();
-            for _ in 0..=rng.below(KICKS) {
-                let seam = rng.below(kicked.matching.len());
-                kicked.matching[seam] += if rng.unit() < 0.5 { 1 } else { -1 };
+/// How far spheres of 20 vertices end from the optimum, where it is proven.
+fn measure_spheres(count: u64) -> Result<Table, Box<dyn Error>> {
+    let mut table = Table::new([
+        "norm",
+        "noise",
+        "spheres",
+        "local moves: mean excess",
+        "worst",
+        "search: worst excess",
+        "proven",
+        "CPU s each",
+    ]);
+    for (norm, name) in [(AngleNorm::L2, "l2"), (AngleNorm::L1, "l1")] {
+        for noise in NOISES {
+            progress(&format!("spheres: {name}, noise {noise}"));
+            let mut excess = Vec::new();
+            let mut proven = 0;
+            let mut seconds = 0.0;
+            for seed in 0..count {
+                let piece = sphere(seed, noise)?;
+                let options = ConsistencyOptions { norm, ..Default::default() };
+                let local = piece.consistent(&ConsistencyOptions { work: 0, ..options })?.1;
+                let clock = Clock::start();
+                let found = piece.consistent(&options)?.1;
+                seconds += clock.seconds();
+                if found.optimal {
+                    proven += 1;
+                    let over = |value: f64| (value / found.objective - 1.0).max(0.0);
+                    excess.push((over(local.objective), over(found.objective)));
+                }
             }
-            let (cut, found) = piece.consistent(&kicked, AngleNorm::L2)?;
-            if found.objective < lowest {
-                (best, lowest) = (cut, found.objective);
-            }
+            let worst = |of: fn(&(f64, f64)) -> f64| excess.iter().map(of).fold(0.0, f64::max);
+            let mean = excess.iter().map(|e| e.0).sum::<f64>() / excess.len().max(1) as f64;
+            let percent =
+                |x: f64| if x < NONE { "0".to_owned() } else { format!("{:.2} %", 100.0 * x) };
+            table.report(vec![
+                name.to_owned(),
+                noise.to_string(),
+                count.to_string(),
+                percent(mean),
+                percent(worst(|e| e.0)),
+                percent(worst(|e| e.1)),
+                proven.to_string(),
+                format!("{:.3}", seconds / count.max(1) as f64),
+            ]);
         }
-        total += lowest;
     }
-    Ok(total)
+    Ok(table)
+}
+
+/// A small sphere with noise on its angles.
+fn sphere(seed: u64, noise: f64) -> Result<Piece, Box<dyn Error>> {
+    let soup = small_sphere(seed);
+    let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces)?;
+    let metric = Metric::from_positions(&mesh, &soup.positions);
+    let mut piece = Piece::new(mesh, metric);
+    let mut rng = Rng::new(seed);
+    piece.angles.iter_mut().for_each(|a| *a += noise * (2.0 * rng.unit() - 1.0));
+    Ok(piece)
 }

@@ -41,7 +41,7 @@ pub(super) struct Effort {
 }
 
 /// Index changes under way.
-pub(super) struct Search<'a> {
+pub(super) struct Descent<'a> {
     pub(super) groups: &'a Groups,
     pub(super) system: &'a System,
     pub(super) resistances: Resistances,
@@ -52,7 +52,7 @@ pub(super) struct Search<'a> {
     pub(super) impossible_units: usize,
 }
 
-impl Search<'_> {
+impl Descent<'_> {
     /// Sends the units that no triangles could have to the best partners.
     pub(super) fn enter_bounds(
         &mut self,

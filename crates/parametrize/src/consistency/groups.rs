@@ -20,9 +20,8 @@ pub(super) struct Groups {
     pub(super) list: Vec<Group>,
     /// Groups of each basin, ascending; integer matchings move index anywhere within a basin.
     pub(super) basins: Vec<Basin>,
-    /// Whether the mesh component of a group has a boundary, and the first group of each that has none.
+    /// Whether the mesh component of a group has a boundary.
     pub(super) open: Vec<bool>,
-    pub(super) pinned: Vec<u32>,
     /// Mesh component of each group.
     pub(super) component: Vec<u32>,
 }
@@ -112,14 +111,9 @@ impl Groups {
         for v in mesh.vertices().filter(|&v| mesh.is_boundary(v)) {
             has_face(v).into_iter().for_each(|h| closed[label[h.face()] as usize] = false);
         }
-        let mut groups = Self { of, list, basins, open: Vec::new(), pinned: Vec::new(), component };
+        let mut groups = Self { of, list, basins, open: Vec::new(), component };
         groups.check_sums(mesh, &closed)?;
         groups.open = groups.component.iter().map(|&c| !closed[c as usize]).collect();
-        for (g, &c) in groups.component.iter().enumerate() {
-            if std::mem::replace(&mut closed[c as usize], false) {
-                groups.pinned.push(g as u32);
-            }
-        }
         Ok(groups)
     }
 

@@ -1,10 +1,11 @@
-//! Consistent matchings: the nearest matchings, indices and angles that triangles can have.
+//! Consistent matchings: matchings, indices and angles that triangles can have, near given ones.
 //!
 //! Problem (14) of Levi 2021 (suppl. sec. 9). Matchings carry no cost; they only move
-//! index from vertex to vertex. What is left is a convex quadratic over integer indices (`descent`) and,
-//! for fixed indices, a quadratic program in the angles (`program`).
+//! index from vertex to vertex. What is left is a convex cost of integer indices (`descent`, and exactly `branch`)
+//! and, for fixed indices, a convex program in the angles (`program`).
 
 mod bound;
+mod branch;
 mod candidates;
 mod descent;
 mod error;
@@ -13,8 +14,10 @@ mod from_map;
 mod groups;
 mod input;
 mod landscape;
+mod piece;
 mod problem;
 mod program;
+mod refine;
 mod resistance;
 mod solve;
 mod system;

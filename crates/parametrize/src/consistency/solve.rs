@@ -1,13 +1,11 @@
 //! Problem (14) from start to end.
 
-use super::bound;
 use super::error::ConsistencyError;
 use super::flow::{move_units, settle_real};
 use super::groups::{FREE, Groups};
-use super::input::{
-    AngleNorm, ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet, SeamMatching,
-};
+use super::input::{ConsistencyInput, ConsistencyOptions, Consistent, MatchingSet, SeamMatching};
 use super::problem::Problem;
+use super::refine::{Refined, State};
 use super::system::System;
 use crate::progress::Watch;
 use seamstress_mesh::{HalfedgeData, TriMesh, VertexData};
@@ -24,8 +22,9 @@ const SNAP: f64 = 1e-6;
 /// takes and gives any amount of index. The index of a loop around a handle changes only by the paths
 /// that cross it. Several components are solved in one go.
 ///
-/// Indices are found by descent: the result is a local optimum over integers, exact over angles for the
-/// indices found; compare [`Consistent::objective`] with [`Consistent::lower_bound`].
+/// Indices are found by descent, then by exact search: of the whole component where few indices are undecided, else of
+/// small patches, as far as [`ConsistencyOptions::work`] goes. The angles are the best for the indices found. Only where
+/// [`Consistent::optimal`] is true is nothing nearer; elsewhere [`Consistent::gap`] says by how much it may be.
 ///
 /// # Errors
 /// [`ConsistencyError`]: faulty input, no positive angles for any indices tried, or cancelled.
@@ -43,9 +42,12 @@ pub fn make_consistent(
     let rounded: Vec<f64> = input.seams.iter().map(rounded).collect();
     let start = shifted(mesh, input.seams, input.indices, &given, &rounded);
     let groups = Groups::new(mesh, input, &start, options)?;
-    let system = System::new(mesh, &groups)?;
-    let mut problem = Problem::new(&groups, system, &input.angles.0)?;
-    let (change, angles) = problem.solve(options, watch)?;
+    let group = mesh.halfedges().map(|h| groups.of[mesh.origin(h)]).collect();
+    let system = System::new(group, groups.len())?;
+    let components = triangles_by_component(mesh);
+    let mut problem = Problem::new(&groups, system, &input.angles.0, &components)?;
+    let Refined { state: State { change, angles }, bound, proven: optimal } =
+        problem.solve(options, watch)?;
 
     let mut stats = problem.stats();
     let mut matchings = rounded.clone();
@@ -56,18 +58,19 @@ pub fn make_consistent(
     settle_real(mesh, &moved, &indices, input.seams, &mut matchings);
 
     let changes = angles.iter().zip(input.angles.iter()).map(|(a, b)| a - b);
-    let (objective, lower_bound) = match options.norm {
-        AngleNorm::L2 => {
-            let bound = bound::squares(&groups, &problem.system, input.angles);
-            (changes.map(|d| d * d).sum(), bound)
-        }
-        AngleNorm::L1 => {
-            let bound = bound::absolute(&groups, &problem.system, input.angles);
-            (changes.map(f64::abs).sum(), bound)
-        }
-    };
+    let objective = changes.map(|change| options.norm.cost(change)).sum();
+    let lower_bound = bound.min(objective);
     let angles = HalfedgeData(angles);
-    Ok(Consistent { matchings, indices, angles, objective, lower_bound, stats })
+    Ok(Consistent { matchings, indices, angles, objective, lower_bound, optimal, stats })
+}
+
+fn triangles_by_component(mesh: &TriMesh) -> Vec<Vec<u32>> {
+    let (label, n_components) = mesh.connected_faces();
+    let mut components = vec![Vec::new(); n_components];
+    for f in mesh.faces() {
+        components[label[f] as usize].push(f.0);
+    }
+    components
 }
 
 fn rounded(seam: &SeamMatching) -> f64 {

@@ -4,11 +4,15 @@
 //! when the triangles are eliminated, a Laplacian over the groups: of each triangle
 //! `diag(w) - w w' / sum w`.
 
-use super::groups::{FREE, Groups};
+use super::groups::FREE;
+use crate::cut::DisjointSets;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
-use seamstress_mesh::TriMesh;
 
+/// By what share of itself a pinned group's diagonal grows: where the matrix is singular, and where it may
+/// be nearly so. Steps of the interior point may be a little inexact.
+const PIN: f64 = 1.0;
+const LIGHT_PIN: f64 = 1e-9;
 /// Right-hand sides solved together.
 const BATCH: usize = 8;
 
@@ -28,9 +32,8 @@ pub(super) struct System {
 }
 
 impl System {
-    pub(super) fn new(mesh: &TriMesh, groups: &Groups) -> Result<Self, NotPositiveDefinite> {
-        let group: Vec<u32> = mesh.halfedges().map(|h| groups.of[mesh.origin(h)]).collect();
-        let n = groups.len();
+    /// Of triangles with the groups of their corners, three in a row; `n` groups in all.
+    pub(super) fn new(group: Vec<u32>, n: usize) -> Result<Self, NotPositiveDefinite> {
         let mut builder = PatternBuilder::new(n);
         let mut edges = Vec::with_capacity(group.len());
         for corners in group.chunks_exact(3) {
@@ -55,7 +58,7 @@ impl System {
             .collect();
         let cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
         let values = vec![0.0; pattern.len()];
-        let pinned = groups.pinned.clone();
+        let pinned = pinned(&group, n);
         Ok(Self { group, pattern, graph, pinned, order, slots, values, cholesky })
     }
 
@@ -73,8 +76,8 @@ impl System {
         })
     }
 
-    /// Factors the Laplacian of the corner weights with `slack` on the diagonal; without slack, a group
-    /// of each closed component is pinned.
+    /// Factors the Laplacian of the corner weights plus a diagonal. A group of
+    /// each closed component is pinned, as lightly as will do.
     pub(super) fn factorize(
         &mut self,
         weights: &[f64],
@@ -95,8 +98,8 @@ impl System {
                 }
                 let value = &mut self.values[slot as usize];
                 if i == j {
-                    // w - w^2 / sum without cancellation.
-                    *value += w[i] * ((sum - w[i]) / sum);
+                    // w - w^2 / sum without cancellation, for the weights differ by many orders.
+                    *value += w[i] * ((w[(i + 1) % 3] + w[(i + 2) % 3]) / sum);
                 } else {
                     // Two corners of one group meet on the diagonal, once from each side.
                     let twice = self.group[3 * f + i] == self.group[3 * f + j];
@@ -106,11 +109,10 @@ impl System {
         }
         let diagonal = self.pattern.diagonal();
         diagonal.iter().for_each(|&k| self.values[k as usize] += slack);
-        if slack == 0.0 {
-            for &g in &self.pinned {
-                let value = &mut self.values[diagonal[g as usize] as usize];
-                *value = if *value > 0.0 { 2.0 * *value } else { 1.0 };
-            }
+        let pin = if slack == 0.0 { PIN } else { LIGHT_PIN };
+        for &g in &self.pinned {
+            let value = &mut self.values[diagonal[g as usize] as usize];
+            *value = if *value > 0.0 { *value * (1.0 + pin) } else { 1.0 };
         }
         self.cholesky.factorize(&self.pattern, &self.values)
     }
@@ -139,4 +141,25 @@ impl System {
     pub(super) fn selected_inverse(&self) -> Result<Vec<f64>, NotPositiveDefinite> {
         self.cholesky.selected_inverse(&self.pattern).ok_or(NotPositiveDefinite)
     }
+}
+
+/// The first group of every set of groups joined by triangles that no free corner grounds.
+fn pinned(group: &[u32], n: usize) -> Vec<u32> {
+    let mut joined = DisjointSets::new(n);
+    for corners in group.chunks_exact(3) {
+        let mut bound = corners.iter().copied().filter(|&g| g != FREE);
+        if let Some(first) = bound.next() {
+            bound.for_each(|other| {
+                joined.unite(first, other);
+            });
+        }
+    }
+    let mut settled = vec![false; n];
+    for corners in group.chunks_exact(3).filter(|corners| corners.contains(&FREE)) {
+        for &g in corners.iter().filter(|&&g| g != FREE) {
+            settled[joined.find(g) as usize] = true;
+        }
+    }
+    let is_first = |g: &u32| !std::mem::replace(&mut settled[joined.find(*g) as usize], true);
+    (0..n as u32).filter(is_first).collect()
 }
