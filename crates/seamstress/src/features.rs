@@ -416,6 +416,18 @@ pub(crate) fn resolve(surface: &Surface, features: &Features) -> Result<FeatureC
     Ok(FeatureCurves::new(surface, edges, sources))
 }
 
+/// The edges that sources name on a surface, for other uses than features.
+///
+/// # Errors
+/// If a file cannot be read, or a source names what is not an edge.
+#[cfg(feature = "lab")]
+pub(crate) fn named_edges(surface: &Surface, sources: &[FeatureSource]) -> Result<EdgeSet, Error> {
+    let namer = Namer::new(surface);
+    sources.iter().try_fold(EdgeSet::new(surface.mesh(), []), |edges, source| {
+        Ok(edges.union(surface.mesh(), &namer.edges_of(source)?))
+    })
+}
+
 /// Turns the names of a source into edges.
 struct Namer<'a> {
     surface: &'a Surface,

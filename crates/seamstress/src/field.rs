@@ -5,8 +5,8 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::map::SeamlessMap;
 use crate::report::{SurfaceReport, VERSION};
 use crate::surface::Surface;
-use seamstress_mesh::{Face, Halfedge, HalfedgeData};
-use seamstress_parametrize::field::{self as method, Homology, directions_in_space};
+use seamstress_mesh::{Face, Halfedge, HalfedgeData, TriMesh};
+use seamstress_parametrize::field::{self as method, DualLoop, Homology, directions_in_space};
 use seamstress_parametrize::map::Cone;
 use seamstress_parametrize::{self as parametrize};
 use serde::Serialize;
@@ -32,8 +32,34 @@ pub struct FieldReport {
     pub input: SurfaceReport,
     /// Vertices with an index other than zero, in quarters of a turn.
     pub cones: Vec<Cone>,
-    /// Indices of the loops around handles, two for each, in quarters.
-    pub loop_indices: Vec<i32>,
+    /// Loops around handles, two for each.
+    pub loops: Vec<FieldLoop>,
+    /// Edges whose matching is not that of the files, 0 to 3, but full turns more or less.
+    pub full_turns: Vec<FullTurns>,
+}
+
+/// A closed path of faces and the index of the field along it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct FieldLoop {
+    /// Minus the quarters by which the path turns left in the map.
+    pub index: i32,
+    /// The faces in order; the last is next to the first.
+    pub faces: Vec<u32>,
+    /// The ends of the edge by which each face is left, as that face has them.
+    pub edges: Vec<[u32; 2]>,
+}
+
+/// The integer `k` of an edge in (13) of Levi 2021: with the matchings `r + 4 k` all indices are those of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct FullTurns {
+    /// The ends of the edge, as the face on its left has them.
+    pub vertices: [u32; 2],
+    /// `k`, from left to right.
+    pub turns: i32,
 }
 
 /// The matching across an edge.
@@ -58,7 +84,8 @@ impl CrossField {
             seamstress: VERSION,
             input: surface.report().clone(),
             cones: cones.map(|(v, &index)| Cone { vertex: v.0, index }).collect(),
-            loop_indices: homology.loops().iter().map(|l| field.loop_index(mesh, l)).collect(),
+            loops: homology.loops().iter().map(|path| field_loop(mesh, &field, path)).collect(),
+            full_turns: full_turns(mesh, field.matching()),
         };
         Self { surface: surface.clone(), field, report }
     }
@@ -106,13 +133,31 @@ impl CrossField {
     }
 }
 
+fn field_loop(mesh: &TriMesh, field: &method::CrossField, path: &DualLoop) -> FieldLoop {
+    FieldLoop {
+        index: field.loop_index(mesh, path),
+        faces: path.exits.iter().map(|h| h.face().0).collect(),
+        edges: path.exits.iter().map(|&h| ends(mesh, h)).collect(),
+    }
+}
+
+fn full_turns(mesh: &TriMesh, matching: &HalfedgeData<i32>) -> Vec<FullTurns> {
+    let turns =
+        |h: Halfedge| FullTurns { vertices: ends(mesh, h), turns: matching[h].div_euclid(4) };
+    mesh.edges().map(turns).filter(|edge| edge.turns != 0).collect()
+}
+
+fn ends(mesh: &TriMesh, h: Halfedge) -> [u32; 2] {
+    [mesh.origin(h).0, mesh.tip(h).0]
+}
+
 /// All edges with their matchings modulo 4.
 pub(crate) fn matchings(surface: &Surface, matching: &HalfedgeData<i32>) -> Vec<EdgeMatching> {
     let mesh = surface.mesh();
     let face = |Face(f): Face| f;
     let row = |h: Halfedge| EdgeMatching {
         faces: [Some(face(h.face())), mesh.twin(h).map(|t| face(t.face()))],
-        vertices: [mesh.origin(h).0, mesh.tip(h).0],
+        vertices: ends(mesh, h),
         matching: matching[h].rem_euclid(4),
     };
     mesh.edges().map(row).collect()

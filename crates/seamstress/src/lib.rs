@@ -84,7 +84,7 @@ pub use features::{
     FeatureCurve, FeatureCurves, FeatureNode, FeatureReport, FeatureSource, FeatureSourceReport,
     Features,
 };
-pub use field::{CrossField, EdgeMatching, FieldReport};
+pub use field::{CrossField, EdgeMatching, FieldLoop, FieldReport, FullTurns};
 #[cfg(feature = "io")]
 pub use field::{write_cones, write_matchings};
 #[doc(hidden)]

@@ -24,7 +24,7 @@ Examples:
 /// Read the cross field off a seamless map, or off a quad mesh
 ///
 /// The directions of the map's axes on every face, the matchings between them, their cones, and the indices of
-/// loops around handles. Of a quad mesh the field is one of its triangles, two for each quad; the cones are its
+/// loops around handles; with `--json` also these loops, and the full turns of the matchings. Of a quad mesh the field is one of its triangles, two for each quad; the cones are its
 /// irregular vertices.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
@@ -108,7 +108,7 @@ impl Command for FieldArgs {
 
     fn summary(&self, field: &CrossField) -> Vec<String> {
         let report = field.report();
-        let loops: Vec<String> = report.loop_indices.iter().map(i32::to_string).collect();
+        let loops: Vec<String> = report.loops.iter().map(|l| l.index.to_string()).collect();
         let loops = if loops.is_empty() { "none".into() } else { loops.join(", ") };
         let mut rows = summary::surface_rows(&report.input);
         rows.push(row("field", &counted(report.cones.len(), "cone")));

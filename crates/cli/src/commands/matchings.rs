@@ -22,7 +22,8 @@ Examples:
 /// Find consistent matchings near those of a map with foldovers, or of a cross field
 ///
 /// Matchings, indices and angles that triangles can have: positive angles with the right sums, and no vertex
-/// without an angle. The summary says how far the angles moved, and how far they must at least.
+/// without an angle. On small meshes they are the nearest ones; on others nearer ones may exist. The summary says
+/// how far the angles moved, and whether that is proven least or by how much others may be nearer.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct MatchingsArgs {
@@ -99,12 +100,22 @@ impl Command for MatchingsArgs {
             counted(report.stats.changed_indices, "vertex"),
         );
         rows.push(row("changed", &text));
-        let text = format!(
-            "{} from those given, {} at least",
-            rounded(report.objective),
-            rounded(report.lower_bound),
-        );
-        rows.push(row("angles", &text));
+        if !report.real_matchings.is_empty() {
+            let text = format!("{}, rounded in files", report.real_matchings.len());
+            rows.push(row("real", &text));
+        }
+        let proof = match report.optimal {
+            true => "proven nearest".into(),
+            false => format!(
+                "others are at most {:.1} % nearer ({} at least)",
+                100.0 * report.gap,
+                rounded(report.lower_bound),
+            ),
+        };
+        rows.push(row(
+            "angles",
+            &format!("{} from those given; {proof}", rounded(report.objective)),
+        ));
         rows
     }
 }

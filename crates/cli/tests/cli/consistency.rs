@@ -78,3 +78,56 @@ fn a_map_of_another_mesh_and_missing_input_are_refused() {
     folder.expect(2, &["repair-matchings", "in.obj", "-o", "m.matching"]);
     assert_eq!(folder.names(), ["in.obj", "map.obj", "other.obj"]);
 }
+
+/// A regular tetrahedron unfolded into a triangle twice its size: every vertex has index 2.
+const UNFOLDED: &str = "\
+v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1
+vt 0 0\nvt 1 0\nvt 0.5 0.8660254037844386
+vt 0.5 -0.8660254037844386\nvt -0.5 0.8660254037844386\nvt 1.5 0.8660254037844386
+f 1/1 2/2 3/3\nf 1/1 4/4 2/2\nf 1/1 3/3 4/5\nf 2/2 4/6 3/3\n";
+
+#[test]
+fn matchings_are_constant_integers_or_real_numbers() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::tetrahedron());
+    folder.write("map.obj", UNFOLDED);
+    folder
+        .expect(0, &["field", "in.obj", "map.obj", "-o", "f.rawfield", "--matching", "m.matching"]);
+    // A quarter more across the edge between vertices 0 and 1: their indices become 1 and 3.
+    let matching = folder.read("m.matching");
+    assert!(matching.contains("0 1 0 1 0\n"), "{matching}");
+    folder.write("m.matching", matching.replace("0 1 0 1 0\n", "0 1 0 1 1\n"));
+    let start = ["repair-matchings", "in.obj", "--field", "f.rawfield", "--matching", "m.matching"];
+    let repaired = |more: &[&str]| -> Value {
+        let run = folder.expect(0, &[&start[..], &["-o", "out.matching", "--json"], more].concat());
+        serde_json::from_str(&run.stdout).unwrap()
+    };
+    let all = repaired(&[]);
+    assert_eq!(all["stats"]["changed_matchings"], 1);
+    assert!(all["objective"].as_f64().unwrap() < 1e-12);
+    assert_eq!(all["optimal"], true);
+
+    // Nothing may change: two vertices are a quarter off, and the Laplacian of a regular tetrahedron is 8/3.
+    let constant = repaired(&["--constant-edges", "edges:0-1,0-2,0-3,1-2,1-3,2-3"]);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let objective = constant["objective"].as_f64().unwrap();
+    assert!((objective - 0.75 * quarter * quarter).abs() < 1e-9, "{objective}");
+    assert_eq!(constant["stats"]["changed_matchings"], 0);
+    assert_eq!(constant["optimal"], true);
+    assert!(folder.read("out.matching").contains("0 1 0 1 1\n"));
+
+    // The one real matching goes back by the quarter: to one full turn, by which the frames differ there.
+    folder.write("rest.pairs", "0 2\n0 3\n1 2\n1 3\n2 3\n");
+    let sets = ["--constant-edges", "pairs:rest.pairs", "--real-edges", "edges:0-1"];
+    let real = repaired(&sets);
+    assert!(real["objective"].as_f64().unwrap() < 1e-12);
+    assert_eq!(real["stats"]["changed_matchings"], 0);
+    let found = real["real_matchings"].as_array().unwrap();
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0]["vertices"], serde_json::json!([0, 1]));
+    assert!((found[0]["matching"].as_f64().unwrap() - 4.0).abs() < 1e-9);
+
+    let both = ["-o", "o.matching", "--constant-edges", "edges:1-0", "--real-edges", "edges:0-1"];
+    let run = folder.expect(2, &[&start[..], &both].concat());
+    assert!(run.stderr.contains("cannot be both constant and real"), "{}", run.stderr);
+}

@@ -202,3 +202,90 @@ fn a_mesh_of_triangles_without_a_map_has_no_field_to_read_off() {
     assert!(run.stderr.contains("not a quad mesh"), "{}", run.stderr);
     assert!(!folder.names().contains(&"f.rawfield".to_owned()));
 }
+
+/// A torus of 4 by 3 quads, each with its corners counter-clockwise from the outside.
+fn torus_of_quads() -> String {
+    let (n, m) = (4, 3);
+    let mut text = String::new();
+    for i in 0..n {
+        for j in 0..m {
+            let [a, b] =
+                [(i, n), (j, m)].map(|(i, n)| f64::from(i) / f64::from(n) * std::f64::consts::TAU);
+            let r = 2.0 + b.cos();
+            text += &format!("v {} {} {}\n", r * a.cos(), r * a.sin(), b.sin());
+        }
+    }
+    let at = |i: i32, j: i32| (i % n) * m + j % m + 1;
+    for i in 0..n {
+        for j in 0..m {
+            let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+        }
+    }
+    text
+}
+
+/// Every regular grid of quads on a torus is a parallel field: each loop closes without a turn.
+#[test]
+fn loops_of_a_parallel_field_are_listed_and_have_index_zero() {
+    let folder = Folder::new();
+    folder.write("torus.obj", torus_of_quads());
+    let run = folder.expect(
+        0,
+        &["field", "torus.obj", "-o", "f.rawfield", "--matching", "f.matching", "--json"],
+    );
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    let loops = report["loops"].as_array().unwrap();
+    assert_eq!(loops.len(), 2);
+    let rows: Vec<Vec<i64>> = folder.read("f.matching").lines().skip(1).map(numbers_of).collect();
+    for path in loops {
+        assert_eq!(path["index"], 0);
+        let ids = |key: &str| path[key].as_array().unwrap().clone();
+        let (faces, edges) = (ids("faces"), ids("edges"));
+        assert!(faces.len() >= 3 && faces.len() == edges.len());
+        for (i, edge) in edges.iter().enumerate() {
+            // The edge lies between its face and the next one.
+            let pair = [&faces[i], &faces[(i + 1) % faces.len()]].map(|f| f.as_i64().unwrap());
+            let ends = [&edge[0], &edge[1]].map(|v| v.as_i64().unwrap());
+            let is_there = rows.iter().any(|row| {
+                let forth = row[..2] == pair && row[2..4] == ends;
+                forth || (row[..2] == [pair[1], pair[0]] && row[2..4] == [ends[1], ends[0]])
+            });
+            assert!(is_there, "{pair:?} {ends:?}");
+        }
+    }
+}
+
+fn numbers_of(line: &str) -> Vec<i64> {
+    line.split_whitespace().map(|x| x.parse().unwrap()).collect()
+}
+
+/// The indices of the vertices by counting, as chapter 10 has it, from matchings modulo 4 and their full turns.
+#[test]
+fn full_turns_complete_the_matchings() {
+    let folder = folder_with_field();
+    let run = folder.expect(0, &["field", "in.obj", "map.obj", "-o", "f.rawfield", "--json"]);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    let mesh = testkit::icosphere(2);
+    let mut index = vec![4i64; mesh.positions.len()];
+    mesh.faces.iter().for_each(|face| index[face[0] as usize] += 4);
+    let rows: Vec<Vec<i64>> = folder.read("f.matching").lines().skip(1).map(numbers_of).collect();
+    assert_eq!(rows.len(), 480);
+    for row in rows {
+        let [left, right] = [row[2], row[3]].map(|v| v as usize);
+        index[left] -= row[4];
+        index[right] += row[4] - 4;
+    }
+    let turns = report["full_turns"].as_array().unwrap();
+    assert!(!turns.is_empty());
+    for edge in turns {
+        let k = edge["turns"].as_i64().unwrap();
+        index[edge["vertices"][0].as_u64().unwrap() as usize] -= 4 * k;
+        index[edge["vertices"][1].as_u64().unwrap() as usize] += 4 * k;
+    }
+    let mut found = vec![0; index.len()];
+    for cone in report["cones"].as_array().unwrap() {
+        found[cone["vertex"].as_u64().unwrap() as usize] = cone["index"].as_i64().unwrap();
+    }
+    assert_eq!(index, found);
+}

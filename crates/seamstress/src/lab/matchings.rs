@@ -2,6 +2,7 @@
 
 use super::start::{read_corner_uvs, read_cross_field};
 use crate::error::{Error, ErrorKind};
+use crate::features::{FeatureSource, named_edges};
 use crate::field::{EdgeMatching, matchings};
 use crate::report::{SurfaceReport, VERSION};
 use crate::surface::Surface;
@@ -38,7 +39,18 @@ pub struct MatchingOptions {
     /// How the distance to the angles is measured [default: l1 for a map, l2 for a field]
     #[cfg_attr(feature = "clap", arg(long, value_enum))]
     pub norm: Option<Norm>,
+
+    /// Keep the matchings of these edges; sources as in `map --features`, may be given several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SOURCE"))]
+    pub constant_edges: Vec<FeatureSource>,
+
+    /// Let the matchings of these edges be any real numbers: not rounded yet
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SOURCE"))]
+    pub real_edges: Vec<FeatureSource>,
 }
+
+/// An index this near to an integer is one, quarters.
+const SETTLED: f64 = 1e-6;
 
 /// How the change of angles is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,23 +82,43 @@ pub struct ConsistencyReport {
     pub input: SurfaceReport,
     /// Vertices with an index other than zero before.
     pub cones_before: usize,
-    /// Interior vertices with an index other than zero now, in quarters.
+    /// Interior vertices with an index other than zero now, in quarters; without those whose index real matchings
+    /// leave between two integers.
     pub cones: Vec<Cone>,
     /// Interior edges.
     pub seams: usize,
-    /// How far the angles moved.
+    /// How far the angles moved: the sum of squared changes, radians squared, or of absolute ones, radians.
     pub objective: f64,
-    /// How far they must at least.
+    /// No solution is nearer than this.
     pub lower_bound: f64,
+    /// Whether that proves the solution nearest, to a part in ten million. If not, a nearer one may exist.
+    pub optimal: bool,
+    /// By what share of the objective a nearer solution could at most be nearer.
+    pub gap: f64,
+    /// The real matchings, which are rounded in files.
+    pub real_matchings: Vec<RealMatching>,
     /// What changed.
     pub stats: ConsistencyStats,
+}
+
+/// A matching that is not rounded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct RealMatching {
+    /// The ends of the edge, as the face on its left has them.
+    pub vertices: [u32; 2],
+    /// Quarter turns from left to right.
+    pub matching: f64,
 }
 
 impl MatchingOptions {
     /// The files that are read.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let files = [&self.from, &self.field, &self.matching];
-        files.into_iter().flatten().map(PathBuf::as_path)
+        let sources = self.constant_edges.iter().chain(&self.real_edges);
+        let files = files.into_iter().flatten().map(PathBuf::as_path);
+        files.chain(sources.filter_map(FeatureSource::file))
     }
 
     fn read(&self, surface: &Surface) -> Result<Given, Error> {
@@ -102,10 +134,21 @@ impl MatchingOptions {
                 (angles, field.indices(mesh), field.matching().clone())
             }
         };
-        let seam = |left: Halfedge| SeamMatching {
-            left,
-            matching: f64::from(matching[left]),
-            set: MatchingSet::Integer,
+        let constant = named_edges(surface, &self.constant_edges)?;
+        let real = named_edges(surface, &self.real_edges)?;
+        if let Some(&h) = constant.edges().iter().find(|&&h| real.contains(h)) {
+            let (a, b) = (mesh.origin(h).0, mesh.tip(h).0);
+            let text = format!("the matching of edge {a}-{b} cannot be both constant and real");
+            return Err(Error::options(text));
+        }
+        let set = |h: Halfedge| match (constant.contains(h), real.contains(h)) {
+            (true, _) => MatchingSet::Constant,
+            (_, true) => MatchingSet::Real,
+            _ => MatchingSet::Integer,
+        };
+        let seam = |left: Halfedge| {
+            let matching = f64::from(matching[left]);
+            SeamMatching { left, matching, set: set(left) }
         };
         Ok(Given { angles, indices, seams: mesh.interior_edges().map(seam).collect() })
     }
@@ -136,10 +179,12 @@ impl ConsistentMatchings {
 }
 
 impl Surface {
-    /// Finds matchings, indices and angles that triangles can have near those that are given.
+    /// Finds matchings, indices and angles that triangles can have near those that are given. They are the nearest
+    /// ones where the report says that they are optimal; its bound says how much nearer others may be.
     ///
     /// # Errors
-    /// [`ErrorKind::Inconsistent`] where there are none, and those of reading the files.
+    /// [`ErrorKind::Inconsistent`] where there are none, [`ErrorKind::BadOptions`] if an edge is both constant and
+    /// real, and those of reading the files.
     ///
     /// # Source
     /// Levi 2021, suppl. sec. 9.
@@ -174,8 +219,15 @@ impl Surface {
             for (seam, r) in given.seams.iter().zip(&consistent.matchings) {
                 matching[seam.left] = r.round() as i32;
             }
+            let settled = |k: f64| (k - k.round()).abs() < SETTLED && k.round() != 0.0;
             let cones = consistent.indices.enumerate();
-            let cones = cones.filter(|(v, k)| !mesh.is_boundary(*v) && **k != 0.0);
+            let cones = cones.filter(|(v, k)| !mesh.is_boundary(*v) && settled(**k));
+            let seams = given.seams.iter().zip(&consistent.matchings);
+            let real = seams.filter(|(seam, _)| seam.set == MatchingSet::Real);
+            let real = real.map(|(seam, &matching)| RealMatching {
+                vertices: [mesh.origin(seam.left).0, mesh.tip(seam.left).0],
+                matching,
+            });
             let report = ConsistencyReport {
                 seamstress: VERSION,
                 input: self.report().clone(),
@@ -184,6 +236,9 @@ impl Surface {
                 seams: given.seams.len(),
                 objective: consistent.objective,
                 lower_bound: consistent.lower_bound,
+                optimal: consistent.optimal,
+                gap: consistent.gap(),
+                real_matchings: real.collect(),
                 stats: consistent.stats,
             };
             Ok(ConsistentMatchings { matchings: matchings(self, &matching), report })
