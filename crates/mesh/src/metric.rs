@@ -1,6 +1,6 @@
 //! Intrinsic geometry: edge lengths and what follows from them.
 
-use crate::ids::{FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
+use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -32,7 +32,7 @@ impl Metric {
     ///
     /// Coordinates of any finite size work: they are scaled by a power of two first. A triangle without
     /// area gets a height of `1e-14` times its longest side, an edge without length is given `1e-14` of
-    /// the mean; see [`Metric::snowflake`] for solving such meshes.
+    /// the mean; see [`Metric::lengthened`] for solving such meshes.
     pub fn from_positions(mesh: &TriMesh, positions: &[[f64; 3]]) -> Self {
         let extent = mesh
             .halfedges()
@@ -73,14 +73,21 @@ impl Metric {
         Self::assemble(length, flat, mean / scale)
     }
 
-    /// The metric whose lengths are these raised to the power `p`, in units of the new mean.
-    ///
-    /// For `p <= 1` the triangle inequality survives, and for `p` near one half thin triangles open up:
-    /// an angle of 1e-9 becomes one of 3e-5, and coincident vertices come apart ("snowflake" metric).
-    /// Lengths below `1e-9` are raised to it first.
-    pub fn snowflake(&self, mesh: &TriMesh, p: f64) -> Self {
-        let mut length: HalfedgeData<f64> =
-            self.length.iter().map(|l| l.max(1e-9).powf(p)).collect();
+    /// By how much every edge would have to be longer, in mean edge lengths, for any two sides of a triangle together to
+    /// exceed the third by `slack` at least.
+    pub fn lengthening(&self, mesh: &TriMesh, slack: f64) -> f64 {
+        let missing = |f: Face| {
+            let [a, b, c] = f.halfedges().map(|h| self.length[h]);
+            slack + (2.0 * a.max(b).max(c) - a - b - c)
+        };
+        mesh.faces().map(missing).fold(0.0, f64::max)
+    }
+
+    /// The metric whose edges are all longer by the same length, in units of the new mean: thin triangles open up and
+    /// coincident vertices come apart, while others keep their shapes almost ("intrinsic mollification", Sharp and
+    /// Crane 2020).
+    pub fn lengthened(&self, mesh: &TriMesh, by: f64) -> Self {
+        let mut length: HalfedgeData<f64> = self.length.iter().map(|l| l + by).collect();
         let mean = length.iter().sum::<f64>() / length.len() as f64;
         length.iter_mut().for_each(|l| *l /= mean);
         let flat =
@@ -234,15 +241,26 @@ mod tests {
     }
 
     #[test]
-    fn snowflake_opens_needles() {
+    fn longer_edges_open_thin_triangles() {
         let mesh = TriMesh::from_faces(3, &[[0, 1, 2]]).unwrap();
+        let slack = |metric: &Metric| {
+            let [a, b, c] = [0, 1, 2].map(|h| metric.length[Halfedge(h)]);
+            (a + b - c).min(b + c - a).min(c + a - b)
+        };
         let needle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1e-9, 0.0]];
-        let metric = Metric::from_positions(&mesh, &needle);
-        assert!(metric.smallest_angle().0 < 2e-9);
-        let snowflake = metric.snowflake(&mesh, 0.5);
-        assert!(snowflake.smallest_angle().0 > 1e-5);
-        let point = Metric::from_positions(&mesh, &[[2.0, 1.0, 0.0]; 3]);
-        assert!(point.snowflake(&mesh, 0.5).smallest_angle().0 > 1.0);
+        let cap = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.4, 0.0, 0.0]];
+        for positions in [needle, cap, [[2.0, 1.0, 0.0]; 3]] {
+            let metric = Metric::from_positions(&mesh, &positions);
+            let by = metric.lengthening(&mesh, 0.01);
+            let longer = metric.lengthened(&mesh, by);
+            // The unit has changed by the new mean length.
+            assert!((slack(&longer) * (1.0 + by) - 0.01).abs() < 1e-2 * by, "{positions:?}");
+            assert!(longer.smallest_angle().0 > 0.01, "{positions:?}");
+        }
+        let (mesh, positions) = square();
+        let square = Metric::from_positions(&mesh, &positions);
+        assert_eq!(square.lengthening(&mesh, 0.01), 0.0);
+        assert_eq!(square.lengthened(&mesh, 0.0).length, square.length);
     }
 
     #[test]

@@ -9,7 +9,6 @@ mod baseline;
 mod certify;
 mod component;
 mod components;
-mod consistent;
 mod domain;
 mod error;
 mod fewer_cones;

@@ -7,6 +7,7 @@ use common::{surface, unwatched};
 use num_complex::Complex64;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_parallel::with_threads;
+use seamstress_parametrize::energy::Triangle;
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::layout::conic::{
     ConicError, ConicMinimum, ConicOptions, MaximalMeasure, Outcome, Phase, Program, Renewal,
@@ -15,7 +16,6 @@ use seamstress_parametrize::layout::conic::{
 use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::space::LinearSpace;
-use seamstress_parametrize::layout::triangle::Triangle;
 use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_testkit as kit;
 use std::ops::ControlFlow;
@@ -72,7 +72,7 @@ fn square() -> LayoutProblem {
     let soup = TriangleSoup { positions, faces: vec![[0, 1, 2], [0, 2, 3]] };
     let (mesh, metric) = surface(&soup);
     let cut = seamstress_parametrize::cut::Cut::new(&mesh, |_| true);
-    let triangles = seamstress_parametrize::layout::triangle::triangles(&mesh, &metric, &cut);
+    let triangles = seamstress_parametrize::energy::triangles(&mesh, &metric, &cut);
     problem(4, triangles)
 }
 

@@ -39,11 +39,8 @@ impl Problem {
     fn naive(soup: TriangleSoup) -> Self {
         let (mesh, metric) = surface(&soup);
         let tree = DualTree::lightest(&mesh, curvature_weight(&mesh, &metric));
-        let matched = seamstress_parametrize::rounding::MatchedCut::new(
-            &Sectors::unaligned(&mesh),
-            &metric,
-            tree,
-        );
+        let matched =
+            seamstress_parametrize::cut::MatchedCut::new(&Sectors::unaligned(&mesh), &metric, tree);
         let indices = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         Self::new(soup, indices.iter().map(|&k| f64::from(k)).collect())
     }

@@ -9,16 +9,15 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
 use seamstress_parametrize::cut::{
-    Cut, DualTree, FramedCut, SeamGraph, Unfolding, connect_cones, frames_of_angles, regauge,
-    turned_vertices, unfold,
+    Cut, DualTree, FramedCut, SeamGraph, Unfolding, connect_cones, regauge, turned_vertices, unfold,
 };
 use seamstress_parametrize::energy::{
     Energy, Jacobian, SymmetricDirichlet, Triangle, is_positive, largest_step, triangles,
 };
 use seamstress_parametrize::layout::arap::frames;
-use seamstress_parametrize::layout::exact::ExactLayout;
-use seamstress_parametrize::layout::homotopy::{Continuation, angle_sums, barrier, continuation};
-use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_out, retree};
+use seamstress_parametrize::layout::barrier::barrier;
+use seamstress_parametrize::layout::exact::{ExactLayout, angle_sums};
+use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_out};
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::space::{LinearSpace, seam_residual, seamless_space};
@@ -161,58 +160,42 @@ fn pulling_back_is_the_adjoint_of_expanding() {
 }
 
 #[test]
-fn homotopies_end_with_the_angles_of_the_cones() {
+fn the_barrier_ends_with_the_angles_of_the_cones() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
         let matched = rounded(&mesh, &metric).matched;
         let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let triangles = triangles(&mesh, &metric, &matched.unfolding.cut);
-        let settings = Continuation::default();
-        let closed = [
-            unwatched(|watch| barrier(&Sectors::unaligned(&mesh), &metric, &matched, watch))
-                .unwrap(),
-            unwatched(|watch| {
-                continuation(&Sectors::unaligned(&mesh), &metric, &matched, &settings, watch)
-            })
-            .unwrap(),
-        ];
-        for layout in closed {
-            assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
-            assert!(triangles.iter().all(|t| t.doubled_area(&layout.z) > 0.0));
-            let sums = angle_sums(&mesh, &triangles, &layout.z);
-            for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
-                let expected = f64::from(4 - index[v]) * FRAC_PI_2;
-                assert!((sums[v] - expected).abs() < 0.7, "vertex {}: {}", v.0, sums[v]);
-            }
+        let closed =
+            unwatched(|watch| barrier(&Sectors::unaligned(&mesh), &metric, &matched, watch));
+        let layout = closed.unwrap();
+        assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
+        assert!(triangles.iter().all(|t| t.doubled_area(&layout.z) > 0.0));
+        let sums = angle_sums(&mesh, &triangles, &layout.z);
+        for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
+            let expected = f64::from(4 - index[v]) * FRAC_PI_2;
+            assert!((sums[v] - expected).abs() < 0.7, "vertex {}: {}", v.0, sums[v]);
         }
     }
 }
 
 #[test]
-fn exact_layouts_have_the_angles_asked_for_over_any_tree() {
+fn exact_layouts_have_the_angles_asked_for() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
+        let sectors = Sectors::unaligned(&mesh);
         let start = rounded(&mesh, &metric);
-        let matched = retree(&Sectors::unaligned(&mesh), &metric, &start.matched);
-        let tree = &matched.unfolding.tree;
-        let frames = frames_of_angles(&mesh, &metric, &metric.angle, tree);
-        for start in [start, FramedCut { matched, frames }] {
-            let matched = &start.matched;
-            let effort = LayoutEffort::Thorough;
-            let layout = unwatched(|watch| {
-                lay_out(&Sectors::unaligned(&mesh), &metric, &start, effort, watch)
-            });
-            let SeamlessLayout { space, y, .. } = layout.unwrap().unwrap();
-            assert!(space.defects(&Sectors::unaligned(&mesh), &y).none());
-            let z = space.expand(&y);
-            let (cut, problem) = (&space.cut, space.problem());
-            assert!(seam_residual(&mesh, cut, &space.matching, &z) < 1e-11);
-            let sums = angle_sums(&mesh, problem.triangles(), &z);
-            let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
-            for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
-                let expected = f64::from(4 - index[v]) * FRAC_PI_2;
-                assert!((sums[v] - expected).abs() < 1e-6);
-            }
+        let effort = LayoutEffort::Thorough;
+        let layout = unwatched(|watch| lay_out(&sectors, &metric, &start, effort, watch));
+        let SeamlessLayout { space, y, .. } = layout.unwrap().unwrap();
+        assert!(space.defects(&sectors, &y).none());
+        let z = space.expand(&y);
+        assert!(seam_residual(&mesh, &space.cut, &space.matching, &z) < 1e-11);
+        let sums = angle_sums(&mesh, space.problem().triangles(), &z);
+        let index = start.matched.sector_indices(&sectors, &metric);
+        for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
+            let expected = f64::from(4 - index[v]) * FRAC_PI_2;
+            assert!((sums[v] - expected).abs() < 1e-6);
         }
     }
 }

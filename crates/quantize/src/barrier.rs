@@ -1,10 +1,10 @@
 //! Moving the integral part of a layout without flipping a triangle.
 
 use super::reduced::couple;
-use seamstress_parametrize::layout::energy::SymmetricDirichlet;
+use seamstress_parametrize::energy::SymmetricDirichlet;
+use seamstress_parametrize::energy::largest_step;
 use seamstress_parametrize::layout::newton::{NewtonOptions, minimize};
 use seamstress_parametrize::layout::problem::LayoutProblem;
-use seamstress_parametrize::layout::triangle::largest_step;
 use seamstress_parametrize::progress::{Cancelled, Watch};
 
 /// Most moves.

@@ -20,8 +20,9 @@ const FAR_OFF: f64 = 0.05;
 /// whatever is asked for.
 const LARGEST_CHANGE: f64 = 1.2;
 
-/// Exponent of the metric for meshes with triangles that have no area.
-const SNOWFLAKE: f64 = 0.5;
+/// Slack of the triangle inequality, in mean edge lengths, of the metric for meshes with triangles that have no area:
+/// most triangles become nearly regular.
+const SLACK: f64 = 0.3;
 
 /// A certified integer map and how it was made.
 #[derive(Debug, Clone)]
@@ -204,9 +205,12 @@ impl<'p> Run<'p, '_, '_> {
         let read =
             |metric: &Metric| IntegerProblem::new(&piece.mesh, metric, &map, &aligned, options);
         let problem = match read(&metric) {
-            // Triangles too thin for arithmetic open up in a snowflake metric.
-            Err(IntegerFailure::Unreadable) => read(&metric.snowflake(&piece.mesh, SNOWFLAKE))
-                .map(|problem| problem.with_size_of(&map)),
+            // Triangles too thin for arithmetic open up where every edge is longer.
+            Err(IntegerFailure::Unreadable) => {
+                let by = metric.lengthening(&piece.mesh, SLACK);
+                let metric = metric.lengthened(&piece.mesh, by);
+                read(&metric).map(|problem| problem.with_size_of(&map))
+            }
             problem => problem,
         };
         self.problems.push(problem.map_err(|cause| self.error(k, cause))?);

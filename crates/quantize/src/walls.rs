@@ -7,8 +7,8 @@ use super::rounding::{Constraint, Room, along};
 use super::scene::{Carry, Connection, Scene};
 use num_complex::Complex64;
 use seamstress_mesh::{Face, FaceData, Halfedge, VertexData};
-use seamstress_parametrize::layout::energy::{ProjectedHessian, SymmetricDirichlet};
-use seamstress_parametrize::layout::triangle::{Triangle, at_corner};
+use seamstress_parametrize::energy::{ProjectedHessian, SymmetricDirichlet};
+use seamstress_parametrize::energy::{Triangle, at_corner};
 use seamstress_parametrize::quarter::turn;
 use std::collections::BTreeMap;
 
@@ -189,7 +189,7 @@ mod tests {
     use crate::space::{GridNeeds, IntegerSpace};
     use seamstress_mesh::{HalfedgeData, Metric, TriMesh, Vertex};
     use seamstress_parametrize::cut::{Cut, connect_cones};
-    use seamstress_parametrize::layout::triangle::triangles;
+    use seamstress_parametrize::energy::triangles;
 
     /// Four vertices, the last in the middle of the others, which are grid points.
     struct Case {

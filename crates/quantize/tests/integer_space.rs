@@ -11,7 +11,7 @@ use seamstress_mesh::features::{EdgeSet, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use seamstress_parametrize::cut::{Cut, connect_cones};
-use seamstress_parametrize::layout::space::{regauge, turned_vertices};
+use seamstress_parametrize::cut::{regauge, turned_vertices};
 use seamstress_parametrize::{MapOptions, SeamlessMap, make_aligned_map};
 use seamstress_quantize::isolines::turning_points;
 use seamstress_quantize::space::{GridNeeds, IntegerSpace};

@@ -8,10 +8,10 @@ use seamstress_mesh::{HalfedgeData, Metric, TriMesh, components::components};
 use seamstress_parametrize::consistency::{
     AngleNorm, ConsistencyError, ConsistencyOptions, Consistent, consistent_cut,
 };
+use seamstress_parametrize::cut::MatchedCut;
 use seamstress_parametrize::cut::{DualTree, curvature_weight};
 use seamstress_parametrize::features::Sectors;
 use seamstress_parametrize::progress::Watch;
-use seamstress_parametrize::rounding::MatchedCut;
 use seamstress_testkit::{Rng, small_sphere};
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -54,8 +54,8 @@ impl DualTree {
     ) -> Self {
         let mut tree = Self::empty(mesh);
         let mut reached = FaceData::filled(mesh.n_faces(), false);
-        let mut queue: BinaryHeap<Candidate> = grounding
-            .map(|(weight, halfedge)| Candidate { weight, halfedge, from: Support::Ground })
+        let mut queue: BinaryHeap<Branch> = grounding
+            .map(|(weight, halfedge)| Branch { weight, halfedge, from: Support::Ground })
             .collect();
         let mut next =
             if queue.is_empty() { Some(Face(0)) } else { tree.pop(mesh, &reached, &mut queue) };
@@ -64,7 +64,7 @@ impl DualTree {
             tree.order.push(f);
             for h in f.halfedges() {
                 if mesh.twin(h).is_some_and(|t| !reached[t.face()]) {
-                    queue.push(Candidate { weight: weight(h), halfedge: h, from: Support::Face });
+                    queue.push(Branch { weight: weight(h), halfedge: h, from: Support::Face });
                 }
             }
             next = tree.pop(mesh, &reached, &mut queue);
@@ -77,9 +77,9 @@ impl DualTree {
         &mut self,
         mesh: &TriMesh,
         reached: &FaceData<bool>,
-        queue: &mut BinaryHeap<Candidate>,
+        queue: &mut BinaryHeap<Branch>,
     ) -> Option<Face> {
-        while let Some(Candidate { halfedge, from, .. }) = queue.pop() {
+        while let Some(Branch { halfedge, from, .. }) = queue.pop() {
             match from {
                 Support::Ground if !reached[halfedge.face()] => {
                     self.ground[halfedge.face()] = Some(halfedge);
@@ -134,13 +134,13 @@ pub fn flatter_end(mesh: &TriMesh, bend: VertexData<f64>) -> impl Fn(Halfedge) -
 }
 
 /// Heap entry: the lightest comes out first, then the smallest half-edge.
-struct Candidate {
+struct Branch {
     weight: f64,
     halfedge: Halfedge,
     from: Support,
 }
 
-/// What a candidate hangs a face on.
+/// What a branch hangs a face on.
 #[derive(Clone, Copy)]
 enum Support {
     /// The face of the half-edge; the new face is across it.
@@ -149,22 +149,22 @@ enum Support {
     Ground,
 }
 
-impl Ord for Candidate {
+impl Ord for Branch {
     fn cmp(&self, other: &Self) -> Ordering {
         other.weight.total_cmp(&self.weight).then(other.halfedge.cmp(&self.halfedge))
     }
 }
 
-impl PartialOrd for Candidate {
+impl PartialOrd for Branch {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Candidate {
+impl PartialEq for Branch {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Candidate {}
+impl Eq for Branch {}

@@ -1,6 +1,6 @@
 //! Cuts with an integer matching on every seam.
 
-use super::{DualTree, Unfolding, isometric, regauge};
+use super::{DualTree, Unfolding, regauge};
 use crate::features::Sectors;
 use crate::quarter::turn;
 use num_complex::Complex64;
@@ -60,14 +60,6 @@ impl MatchedCut {
     pub fn nearest(unfolding: Unfolding) -> Self {
         let matching = unfolding.isometric.iter().map(|r| r.round() as i32).collect();
         Self { unfolding, matching }
-    }
-
-    /// The same matchings over another metric of the same mesh.
-    pub fn with_metric(&self, sectors: &Sectors<'_>, metric: &Metric) -> Self {
-        let Unfolding { tree, turning, .. } = &self.unfolding;
-        let isometric = isometric::rotations(sectors.slit(), &metric.angle, tree, turning);
-        let unfolding = Unfolding { isometric, ..self.unfolding.clone() };
-        Self { unfolding, matching: self.matching.clone() }
     }
 
     /// The matchings as real numbers.

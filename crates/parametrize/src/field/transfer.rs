@@ -87,13 +87,13 @@ impl Transfer<'_> {
                 break;
             }
             if v != start {
-                match self.taking(v, unit) {
-                    Taking::Gladly => {
+                match self.willingness(v, unit) {
+                    Willingness::Gladly => {
                         goal = Some(v);
                         break;
                     }
-                    Taking::Willingly => second_best = second_best.or(Some(v)),
-                    Taking::Not => {}
+                    Willingness::Willingly => second_best = second_best.or(Some(v)),
+                    Willingness::Not => {}
                 }
             }
             let across = |h: &Halfedge| self.mesh.twin(*h).is_some();
@@ -114,20 +114,20 @@ impl Transfer<'_> {
         path
     }
 
-    fn taking(&self, v: Vertex, unit: i32) -> Taking {
+    fn willingness(&self, v: Vertex, unit: i32) -> Willingness {
         if self.mesh.is_boundary(v) {
-            return Taking::Gladly;
+            return Willingness::Gladly;
         }
         let after = self.index[v] + unit;
         match self.target[v] {
-            Some(target) if (target - self.index[v]).signum() == unit => Taking::Gladly,
-            Some(_) => Taking::Not,
+            Some(target) if (target - self.index[v]).signum() == unit => Willingness::Gladly,
+            Some(_) => Willingness::Not,
             None => {
                 let (low, high) = index_bounds(self.mesh.valence(v));
                 match (low..=high).contains(&after) {
-                    true if after.abs() < self.index[v].abs() => Taking::Gladly,
-                    true => Taking::Willingly,
-                    false => Taking::Not,
+                    true if after.abs() < self.index[v].abs() => Willingness::Gladly,
+                    true => Willingness::Willingly,
+                    false => Willingness::Not,
                 }
             }
         }
@@ -149,7 +149,7 @@ impl Transfer<'_> {
 }
 
 /// Whether a vertex takes a unit.
-enum Taking {
+enum Willingness {
     /// It needs it, or is rid of a cone by it, or is on the boundary.
     Gladly,
     /// It becomes a cone.

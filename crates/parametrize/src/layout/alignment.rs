@@ -13,7 +13,7 @@ pub struct Level {
 }
 
 /// Linear form in the unknowns.
-type Form = BTreeMap<u32, f64>;
+type LinearForm = BTreeMap<u32, f64>;
 
 /// Coefficients below this are rounding errors of zero: the exact ones are sums of dyadic fractions.
 const ZERO: f64 = 1e-11;
@@ -25,7 +25,8 @@ const ZERO: f64 = 1e-11;
 /// are eliminated one by one.
 pub fn leveled(space: &LinearSpace, levels: &[Level]) -> LinearSpace {
     let mut equalities = Equalities::new(space.n_unknowns());
-    let mut conditions: Vec<Form> = levels.iter().map(|level| condition(space, level)).collect();
+    let mut conditions: Vec<LinearForm> =
+        levels.iter().map(|level| condition(space, level)).collect();
     loop {
         let before = conditions.len();
         conditions.retain_mut(|form| {
@@ -42,24 +43,24 @@ pub fn leveled(space: &LinearSpace, levels: &[Level]) -> LinearSpace {
         substitute(&mut form, &solved);
         form
     };
-    let rows: Vec<Form> = (0..2 * space.n_wedges()).map(row).collect();
+    let rows: Vec<LinearForm> = (0..2 * space.n_wedges()).map(row).collect();
     renumber(space, &rows)
 }
 
 /// The form that vanishes for a level edge.
-fn condition(space: &LinearSpace, level: &Level) -> Form {
+fn condition(space: &LinearSpace, level: &Level) -> LinearForm {
     let [a, b] = level.ends.map(|w| form_of(space, (2 * w + level.coordinate) as usize));
     let mut form = b;
     add_scaled(&mut form, &a, -1.0);
     form
 }
 
-fn form_of(space: &LinearSpace, row: usize) -> Form {
+fn form_of(space: &LinearSpace, row: usize) -> LinearForm {
     let (columns, coefficients) = space.row(row);
     columns.iter().copied().zip(coefficients.iter().copied()).collect()
 }
 
-fn add_term(form: &mut Form, unknown: u32, c: f64) {
+fn add_term(form: &mut LinearForm, unknown: u32, c: f64) {
     let sum = form.entry(unknown).or_default();
     *sum += c;
     if sum.abs() < ZERO {
@@ -67,7 +68,7 @@ fn add_term(form: &mut Form, unknown: u32, c: f64) {
     }
 }
 
-fn add_scaled(form: &mut Form, other: &Form, factor: f64) {
+fn add_scaled(form: &mut LinearForm, other: &LinearForm, factor: f64) {
     for (&unknown, &c) in other {
         add_term(form, unknown, factor * c);
     }
@@ -101,8 +102,8 @@ impl Equalities {
     }
 
     /// A form in representatives that are not zero.
-    fn reduce(&mut self, form: &Form) -> Form {
-        let mut reduced = Form::new();
+    fn reduce(&mut self, form: &LinearForm) -> LinearForm {
+        let mut reduced = LinearForm::new();
         for (&x, &c) in form {
             let (root, sign) = self.find(x);
             if !self.is_zero[root as usize] {
@@ -114,7 +115,7 @@ impl Equalities {
 
     /// Takes a condition in if it says no more than that two unknowns are equal up to sign or one is zero;
     /// whether it did.
-    fn absorb(&mut self, reduced: &Form) -> bool {
+    fn absorb(&mut self, reduced: &LinearForm) -> bool {
         let terms: Vec<_> = reduced.iter().map(|(&x, &c)| (x, c)).collect();
         match terms[..] {
             [] => true,
@@ -147,9 +148,9 @@ fn uses(space: &LinearSpace, equalities: &mut Equalities) -> Vec<u32> {
 ///
 /// Each step takes the condition and the unknown that add the fewest terms to the coordinates (Markowitz),
 /// among the unknowns with the largest coefficient, which keeps the coefficients exact.
-fn eliminate(mut open: Vec<Form>, mut uses: Vec<u32>) -> BTreeMap<u32, Form> {
-    let mut solved: Vec<(u32, Form)> = Vec::new();
-    let price = |form: &Form, uses: &[u32]| {
+fn eliminate(mut open: Vec<LinearForm>, mut uses: Vec<u32>) -> BTreeMap<u32, LinearForm> {
+    let mut solved: Vec<(u32, LinearForm)> = Vec::new();
+    let price = |form: &LinearForm, uses: &[u32]| {
         let largest = form.values().fold(0.0f64, |m, c| m.max(c.abs()));
         let large = form.iter().filter(|(_, c)| c.abs() > largest - ZERO);
         let (used, pivot) = large.map(|(&x, _)| (uses[x as usize], x)).min()?;
@@ -164,7 +165,7 @@ fn eliminate(mut open: Vec<Form>, mut uses: Vec<u32>) -> BTreeMap<u32, Form> {
     {
         let mut form = open.swap_remove(k);
         let Some(c) = form.remove(&pivot) else { continue };
-        let mut value = Form::new();
+        let mut value = LinearForm::new();
         add_scaled(&mut value, &form, -1.0 / c);
         for other in &mut open {
             if let Some(c) = other.remove(&pivot) {
@@ -184,7 +185,7 @@ fn eliminate(mut open: Vec<Form>, mut uses: Vec<u32>) -> BTreeMap<u32, Form> {
 }
 
 /// Replaces solved unknowns until none is left.
-fn substitute(form: &mut Form, solved: &BTreeMap<u32, Form>) {
+fn substitute(form: &mut LinearForm, solved: &BTreeMap<u32, LinearForm>) {
     if solved.is_empty() {
         return;
     }
@@ -196,9 +197,9 @@ fn substitute(form: &mut Form, solved: &BTreeMap<u32, Form>) {
 }
 
 /// Numbers the unknowns that are left, in order, and their nodes.
-fn renumber(space: &LinearSpace, rows: &[Form]) -> LinearSpace {
+fn renumber(space: &LinearSpace, rows: &[LinearForm]) -> LinearSpace {
     let mut number = vec![u32::MAX; space.n_unknowns()];
-    rows.iter().flat_map(Form::keys).for_each(|&x| number[x as usize] = 0);
+    rows.iter().flat_map(LinearForm::keys).for_each(|&x| number[x as usize] = 0);
     let mut nodes: Vec<u32> = Vec::new();
     let mut last = None;
     for (x, id) in number.iter_mut().enumerate().filter(|(_, id)| **id == 0) {
@@ -208,7 +209,7 @@ fn renumber(space: &LinearSpace, rows: &[Form]) -> LinearSpace {
         nodes.push(here);
         last = Some(node);
     }
-    let renamed = |row: &Form| row.iter().map(|(&x, &c)| (number[x as usize], c)).collect();
+    let renamed = |row: &LinearForm| row.iter().map(|(&x, &c)| (number[x as usize], c)).collect();
     LinearSpace::from_rows(nodes, rows.iter().map(renamed))
 }
 

@@ -2,12 +2,11 @@
 
 use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
-use super::homotopy::angle_sums;
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
 use super::space::seamless_space;
 use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
-use crate::energy::{Energy, extremes, is_positive, triangles};
+use crate::energy::{Energy, Triangle, extremes, is_positive, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, Watch};
@@ -345,4 +344,17 @@ impl ExactLayout {
         wrong_angles.dedup();
         Defects { flips: slit.faces().filter(flipped).collect(), wrong_angles }
     }
+}
+
+/// Sum of the layout's corner angles around each vertex of a mesh or sector of a slit one, radians; a flipped corner counts negative.
+pub fn angle_sums(mesh: &TriMesh, triangles: &[Triangle], z: &[Complex64]) -> VertexData<f64> {
+    let mut sums = VertexData::filled(mesh.n_vertices(), 0.0);
+    for (f, t) in mesh.faces().zip(triangles) {
+        let p = t.wedges.map(|w| z[w as usize]);
+        for (k, v) in mesh.face_vertices(f).into_iter().enumerate() {
+            let w = (p[(k + 1) % 3] - p[k]).conj() * (p[(k + 2) % 3] - p[k]);
+            sums[v] += w.im.atan2(w.re);
+        }
+    }
+    sums
 }

@@ -1,8 +1,6 @@
 //! The linear space of seamless layouts: wedge positions as exact functions of free unknowns.
 
 use crate::cut::{Cut, SeamGraph};
-#[doc(hidden)]
-pub use crate::cut::{regauge, turned_vertices};
 use crate::quarter::{turn, unit};
 use num_complex::Complex64;
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex};

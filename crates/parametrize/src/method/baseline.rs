@@ -108,7 +108,7 @@ fn lay_out_field(
         genus: mesh.genus(),
         boundary_loops: mesh.n_boundary_loops(),
         route: Route::Poisson,
-        metric_exponent: 1.0,
+        lengthening: 0.0,
         rounding_rounds: field.rounds,
         repaired_seams: 0,
         mixed_integer: None,

@@ -35,7 +35,7 @@ impl ComponentMap {
             genus: mesh.genus(),
             boundary_loops: mesh.n_boundary_loops(),
             route,
-            metric_exponent: domain.exponent,
+            lengthening: domain.lengthening,
             rounding_rounds: rounding.rounds,
             repaired_seams: rounding.shifted_seams,
             mixed_integer: rounding.mixed_integer,

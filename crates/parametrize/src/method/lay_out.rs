@@ -1,13 +1,11 @@
 //! The stage that closes the seams.
 
-use super::consistent::consistent_rounding;
 use super::domain::Domain;
 use super::round::round;
 use super::start::repaired;
 use super::{MapOptions, MethodError, Start};
-use crate::layout::exact::Defects;
 use crate::layout::ladder::{self, LayoutEffort, SeamlessLayout};
-use crate::progress::{SolveError, Watch, unless_cancelled};
+use crate::progress::Watch;
 use crate::rounding::Rounding;
 
 /// The layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
@@ -24,18 +22,12 @@ pub(super) fn lay_out<'m>(
 ) -> Result<(Domain<'m>, Rounding, SeamlessLayout), MethodError> {
     let (mut domain, mut rounding) = (domain, rounding);
     loop {
-        let defects = match close(&domain, &rounding, watch)? {
+        let (sectors, metric) = (&domain.sectors, &domain.metric);
+        let effort = LayoutEffort::Thorough;
+        let defects = match ladder::lay_out(sectors, metric, &rounding.start, effort, watch)? {
             Ok(layout) => return Ok((domain, rounding, layout)),
             Err(defects) => defects,
         };
-        if start.leaves_cones_free() && !domain.any_aligned() {
-            let consistent = unless_cancelled(consistent_rounding(&domain, &rounding, watch))?;
-            if let Ok(consistent) = consistent
-                && let Ok(Ok(layout)) = unless_cancelled(close(&domain, &consistent, watch))?
-            {
-                return Ok((domain, consistent, layout));
-            }
-        }
         let Some(fewer) = domain.without_features_at(&defects) else {
             return Err(MethodError::Defective(defects));
         };
@@ -50,13 +42,4 @@ pub(super) fn lay_out<'m>(
             }
         };
     }
-}
-
-fn close(
-    domain: &Domain<'_>,
-    rounding: &Rounding,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Result<SeamlessLayout, Defects>, SolveError> {
-    let (sectors, metric) = (&domain.sectors, &domain.metric);
-    ladder::lay_out(sectors, metric, &rounding.start, LayoutEffort::Thorough, watch)
 }

@@ -39,13 +39,13 @@ pub struct ComponentStats {
     pub boundary_loops: usize,
     /// Route of the final layout.
     pub route: Route,
-    /// Exponent of the metric the map was first made in: 1 unless the mesh is degenerate.
-    pub metric_exponent: f64,
+    /// How much longer every edge was made to find the map, mean edge lengths: 0 unless triangles are degenerate.
+    pub lengthening: f64,
     /// Rounds of the rounding loop.
     pub rounding_rounds: usize,
     /// Seams shifted to make indices possible or matchings consistent.
     pub repaired_seams: usize,
-    /// How mixed-integer rounding went, where it was asked for or was the last resort.
+    /// How mixed-integer rounding went, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixed_integer: Option<MixedIntegerStats>,
     /// Seconds and iterations by stage.

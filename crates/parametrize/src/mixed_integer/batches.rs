@@ -57,7 +57,7 @@ pub fn round_mixed_integer(
             found.incumbent.map(|best| (best.values.into_iter().map(Some).collect(), best.state));
         match values.or(found.partial) {
             Some((values, layout)) => {
-                state.take(&batch, &values, layout);
+                state.accept(&batch, &values, layout);
                 size = (2 * batch.len()).min(most);
             }
             None if batch.len() > 1 => size = batch.len() / 2,
@@ -148,7 +148,7 @@ impl<'a> BatchRounding<'a> {
     }
 
     /// Rounds what was decided of a batch and moves on to its layout.
-    fn take(&mut self, batch: &[usize], values: &[Option<i32>], layout: BatchLayout) {
+    fn accept(&mut self, batch: &[usize], values: &[Option<i32>], layout: BatchLayout) {
         for (&seam, &value) in batch.iter().zip(values) {
             self.rounded[seam] = value;
         }

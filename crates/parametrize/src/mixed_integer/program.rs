@@ -1,6 +1,6 @@
 //! The bounded-distortion program (9) over layouts in which only the rounded seams close.
 
-use super::search::{Relax, Relaxed, Verdict};
+use super::search::{NodeSolution, Relax, Verdict};
 use crate::layout::conic::{
     Outcome, Program, ProgramKind, Renewal, Solver, SolverOptions, interior_point, solve,
 };
@@ -98,7 +98,7 @@ impl BatchProgram<'_> {
         Ok(Ok(match solution.outcome {
             Outcome::Solved => {
                 let corner = layout.corners(&slit, &solution.y);
-                Verdict::Solved(Relaxed {
+                Verdict::Solved(NodeSolution {
                     value: solution.objective.sqrt(),
                     bound: (solution.objective * (1.0 - solution.gap)).max(1.0).sqrt(),
                     position: self.batch.iter().map(|&seam| self.position(seam, &corner)).collect(),

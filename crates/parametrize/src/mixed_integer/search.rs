@@ -22,14 +22,14 @@ pub(super) trait Relax {
 
 /// What became of a node's program.
 pub(super) enum Verdict<S> {
-    Solved(Relaxed<S>),
+    Solved(NodeSolution<S>),
     Infeasible,
     /// The solver failed: nothing is known.
     Unsolved,
 }
 
 /// A solved program.
-pub(super) struct Relaxed<S> {
+pub(super) struct NodeSolution<S> {
     /// Value reached.
     pub(super) value: f64,
     /// Bound from below on what the program and all integers in it can reach.
@@ -140,7 +140,7 @@ pub(super) fn search<R: Relax>(
 /// A node some of whose children are still to be looked at.
 struct Open<S> {
     values: Vec<Option<i32>>,
-    relaxed: Relaxed<S>,
+    relaxed: NodeSolution<S>,
     /// Variables to decide, nearest first, with the place of the nearest of their two integers.
     group: Vec<(usize, usize)>,
     next: Child,
@@ -231,7 +231,7 @@ impl<S> BranchAndBound<'_, S> {
         program: &R,
         stack: &mut Vec<Open<S>>,
         values: Vec<Option<i32>>,
-        relaxed: Relaxed<S>,
+        relaxed: NodeSolution<S>,
     ) {
         if relaxed.bound >= self.cutoff() {
             return;
@@ -239,7 +239,7 @@ impl<S> BranchAndBound<'_, S> {
         let all: Option<Vec<i32>> = values.iter().copied().collect();
         match all {
             Some(values) => {
-                let Relaxed { value, state, .. } = relaxed;
+                let NodeSolution { value, state, .. } = relaxed;
                 if self.incumbent.as_ref().is_none_or(|best| value < best.value) {
                     self.incumbent = Some(Incumbent { values, value, state });
                 }
@@ -340,7 +340,7 @@ mod tests {
                 }
             }
             let value = self.value(&x);
-            Ok(Verdict::Solved(Relaxed { value, bound: value, position: x, state: () }))
+            Ok(Verdict::Solved(NodeSolution { value, bound: value, position: x, state: () }))
         }
 
         fn are_close(&self, a: usize, b: usize) -> bool {

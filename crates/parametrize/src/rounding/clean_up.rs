@@ -53,15 +53,17 @@ pub struct CleanUpOptions {
     pub largest_deviation: f64,
 }
 
+/// Sweeps of cancellations and moves; the last ones hardly find anything.
 const SWEEPS: usize = 6;
-/// Opposite cones tried for each positive one.
+/// Opposite cones tried for each positive one: a farther one costs more, whatever lies between.
 const PARTNERS: usize = 4;
-/// Vertices searched for partners.
+/// Vertices searched for partners, which bounds the work where there are few.
 const SEARCH_LIMIT: usize = 4000;
-/// Passes of moves in one sweep.
+/// Passes of moves in one sweep: cones walk edge by edge, and cancelling them ends the walk.
 const MOVES: usize = 3;
-/// A move has to gain this much.
-const LEAST_GAIN: f64 = 1e-6;
+/// Mean symmetric Dirichlet energy that a move has to gain: a thousandth of the price of a cone, or cones walk to and
+/// fro.
+const MINIMUM_GAIN: f64 = 1e-6;
 
 /// Cancels pairs of cones and moves cones along edges while the surrogate energy grows by less than
 /// the price per cone removed; the matchings change along the way.
@@ -279,7 +281,7 @@ impl<'a> CleanUp<'a> {
                     continue;
                 };
                 self.prepare(&[(from, to)]);
-                if self.change(from, to) < self.budget(from, to) - LEAST_GAIN {
+                if self.change(from, to) < self.budget(from, to) - MINIMUM_GAIN {
                     self.send(from, to, &[road]);
                     count += 1;
                 }

@@ -10,8 +10,19 @@ use std::collections::VecDeque;
 
 /// Weights of dual edges are inverse cotangent sums, these kept in this range.
 const COTANGENT_RANGE: (f64, f64) = (0.1, 10.0);
-/// Passes of the integer descent.
+/// Passes of the integer descent; it ends by itself long before.
 const PASSES: usize = 50;
+/// Added to the diagonal of the face Laplacian, whose constants would be its null space where nothing is held: far below
+/// its other eigenvalues, far above rounding errors.
+const SHIFT: f64 = 1e-10;
+/// Passes of Gauss-Seidel for the real solution, which is only rounded.
+const REAL_PASSES: usize = 200;
+/// Squared lengths of cycles count as this at least.
+const MINIMUM_SQUARE: f64 = 1e-12;
+/// Multiples of a cycle stay below this, whatever a degenerate system says.
+const MAX_MULTIPLE: f64 = 1e6;
+/// A change must lower the energy by more than rounding errors would.
+const MINIMUM_GAIN: f64 = 1e-9;
 
 /// Re-chooses the circulations of the matchings, which no cone sees: moving cones changes how much a
 /// loop around a handle turns, and the best integers change with it.
@@ -148,7 +159,7 @@ impl Projector {
         let order = fill_reducing_order(&Graph::from_edges(nodes, pairs));
         let mut matrix = vec![0.0; pattern.len()];
         for &k in pattern.diagonal() {
-            matrix[k as usize] = 1e-10;
+            matrix[k as usize] = SHIFT;
         }
         for (&[f, g], weight) in sides.iter().zip(&weights) {
             matrix[pattern.diagonal()[f as usize] as usize] += weight;
@@ -209,13 +220,13 @@ fn closest_integers(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
 /// Rounded solution of `Q n = b` (Gauss-Seidel: Q is well conditioned and small).
 fn round_real_minimum(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
     let mut x = vec![0.0; b.len()];
-    for _ in 0..200 {
+    for _ in 0..REAL_PASSES {
         for i in 0..b.len() {
             let row: f64 = q[i].iter().zip(&x).map(|(q, x)| q * x).sum();
-            x[i] += (b[i] - row) / q[i][i].max(1e-12);
+            x[i] += (b[i] - row) / q[i][i].max(MINIMUM_SQUARE);
         }
     }
-    x.into_iter().map(|x| x.round().clamp(-1e6, 1e6) as i32).collect()
+    x.into_iter().map(|x| x.round().clamp(-MAX_MULTIPLE, MAX_MULTIPLE) as i32).collect()
 }
 
 fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
@@ -230,7 +241,7 @@ fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
     for _ in 0..PASSES {
         let mut improved = false;
         for i in 0..b.len() {
-            let by = (-g[i] / q[i][i].max(1e-12)).round() as i32;
+            let by = (-g[i] / q[i][i].max(MINIMUM_SQUARE)).round() as i32;
             if by != 0 {
                 step(&mut n, &mut g, i, by);
                 improved = true;
@@ -241,7 +252,7 @@ fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
                         + q[i][i]
                         + q[j][j]
                         + 2.0 * f64::from(si * sj) * q[i][j];
-                    if change < -1e-9 {
+                    if change < -MINIMUM_GAIN {
                         step(&mut n, &mut g, i, si);
                         step(&mut n, &mut g, j, sj);
                         improved = true;

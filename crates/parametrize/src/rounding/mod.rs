@@ -11,8 +11,6 @@ mod surrogate;
 mod system;
 mod weights;
 
-#[doc(hidden)]
-pub use crate::cut::MatchedCut;
 pub use clean_up::{CleanUpOptions, CleanUpStats, ConeCount, clean_up};
 pub use holonomy::fix_holonomy;
 pub use options::{RoundingOptions, RoundingStrategy};

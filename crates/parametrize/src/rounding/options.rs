@@ -12,7 +12,7 @@ pub enum RoundingStrategy {
     /// By the change of energy it makes on a small patch around the seam: the local estimation of Levi 2021.
     LocalEstimation,
     /// By programs in which matchings are integer variables, see [`crate::mixed_integer`]. Components with
-    /// aligned edges, and those for which it leads to no layout, are rounded by [`Self::ConeBias`].
+    /// aligned edges are rounded by [`Self::ConeBias`].
     MixedInteger,
 }
 

@@ -110,12 +110,12 @@ fn choose(
     threshold: f64,
     cost: impl Fn(u32, f64) -> f64,
 ) -> Vec<(u32, i32)> {
-    let mut candidates: Vec<Candidate> = open
+    let mut candidates: Vec<SeamRounding> = open
         .iter()
         .filter_map(|&edge| {
             let r = rotation[edge as usize];
             let cost = |integer: f64| cost(edge, integer - r);
-            let option = |integer: f64| Candidate {
+            let option = |integer: f64| SeamRounding {
                 cost: cost(integer),
                 turn: (integer - r).abs(),
                 edge,
@@ -126,7 +126,7 @@ fn choose(
             (best.cost <= threshold).then_some(best)
         })
         .collect();
-    candidates.sort_unstable_by_key(Candidate::key);
+    candidates.sort_unstable_by_key(SeamRounding::key);
     let mut used = VertexData::filled(mesh.n_vertices(), false);
     candidates.retain(|candidate| {
         if candidate.turn <= LARGE_TURN {
@@ -142,17 +142,17 @@ fn choose(
     candidates.into_iter().map(|c| (c.edge, c.integer)).collect()
 }
 
-/// A rounding; its key orders by cost, then by how little it turns, then by id. Costs and turns that differ by
+/// The rounding of a seam; its key orders by cost, then by how little it turns, then by id. Costs and turns that differ by
 /// rounding errors only count as equal: these must not decide.
 #[derive(Debug, Clone, Copy)]
-struct Candidate {
+struct SeamRounding {
     cost: f64,
     turn: f64,
     edge: u32,
     integer: i32,
 }
 
-impl Candidate {
+impl SeamRounding {
     fn key(&self) -> (i64, i64, u32, i32) {
         let coarse = |x: f64| (x / SAME_COST).round() as i64;
         (coarse(self.cost), coarse(self.turn), self.edge, self.integer)

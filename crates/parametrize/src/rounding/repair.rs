@@ -61,7 +61,7 @@ pub fn repair(sectors: &Sectors<'_>, metric: &Metric, mut matched: MatchedCut) -
     Repair { matched, shifts, hopeless }
 }
 
-type Step = (usize, Vertex, Vertex, i32);
+type Shift = (usize, Vertex, Vertex, i32);
 
 /// Breadth-first path over turning edges from a sector to the nearest other one that satisfies a
 /// condition.
@@ -69,8 +69,8 @@ fn shortest_path(
     turning_at: &VertexData<Vec<(usize, Vertex, i32)>>,
     start: Vertex,
     goal: impl Fn(Vertex) -> bool,
-) -> Option<Vec<Step>> {
-    let mut from: VertexData<Option<Step>> = VertexData::filled(turning_at.len(), None);
+) -> Option<Vec<Shift>> {
+    let mut from: VertexData<Option<Shift>> = VertexData::filled(turning_at.len(), None);
     let mut queue = VecDeque::from([start]);
     while let Some(v) = queue.pop_front() {
         if v != start && goal(v) {

@@ -13,11 +13,11 @@ const SHIFT: f64 = 1e-8;
 /// coordinates need the real matrix of twice the order, whose factorisation takes twice the time.
 pub(super) enum RelaxationSystem {
     /// One complex unknown per point.
-    Complex(Form<Complex64>),
+    Complex(MatrixForm<Complex64>),
     /// Two real unknowns per point.
     Real {
         /// The matrix.
-        form: Form<f64>,
+        form: MatrixForm<f64>,
         /// Coordinates of the points while the system is solved.
         coordinates: Vec<f64>,
     },
@@ -38,10 +38,10 @@ impl RelaxationSystem {
             |w: &'a [u32]| (0..w.len()).flat_map(move |i| (0..i).map(move |j| (w[j], w[i])));
         let order = fill_reducing_order(&Graph::from_edges(n, cliques.clone().flat_map(pairs)));
         if !real {
-            return Form::new(n, cliques.map(<[u32]>::to_vec), &order).map(Self::Complex);
+            return MatrixForm::new(n, cliques.map(<[u32]>::to_vec), &order).map(Self::Complex);
         }
         let both = |w: &[u32]| w.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect();
-        let form = Form::new(2 * n, cliques.map(both), &expand(&order, 2))?;
+        let form = MatrixForm::new(2 * n, cliques.map(both), &expand(&order, 2))?;
         Ok(Self::Real { form, coordinates: vec![0.0; 2 * n] })
     }
 
@@ -107,13 +107,13 @@ impl RelaxationSystem {
 }
 
 /// A matrix with its pattern and factorisation.
-pub(super) struct Form<T: Scalar> {
+pub(super) struct MatrixForm<T: Scalar> {
     pattern: Pattern,
     matrix: Vec<T>,
     cholesky: Cholesky<T>,
 }
 
-impl<T: Scalar + From<f64> + std::ops::AddAssign + std::ops::Mul<Output = T>> Form<T> {
+impl<T: Scalar + From<f64> + std::ops::AddAssign + std::ops::Mul<Output = T>> MatrixForm<T> {
     fn new(
         n: usize,
         cliques: impl Iterator<Item = Vec<u32>>,

@@ -1,7 +1,7 @@
 //! Minimising behind a barrier that fades out.
 
-use crate::layout::distance::Guarded;
-use crate::layout::energy::Energy;
+use crate::energy::Energy;
+use crate::energy::Guarded;
 use crate::layout::newton::{NewtonOptions, minimize};
 use crate::layout::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};

@@ -2,11 +2,11 @@
 
 use super::guarded::minimize_guarded;
 use super::{Ending, Found, ObjectiveOptions, OptimizeError, newton};
+use crate::energy::Arap;
+use crate::energy::largest_step;
 use crate::features::Sectors;
 use crate::layout::arap::{Poisson, distance_to_frames, frames};
-use crate::layout::distance::Arap;
 use crate::layout::exact::ExactLayout;
-use crate::layout::triangle::largest_step;
 use crate::progress::{Cancelled, Watch};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;

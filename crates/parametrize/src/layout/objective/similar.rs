@@ -9,9 +9,9 @@
 
 use super::guarded::FADE;
 use super::{Ending, Found, ObjectiveOptions, OptimizeError};
+use crate::energy::Jacobian;
+use crate::energy::{Asap, Guarded};
 use crate::features::Sectors;
-use crate::layout::distance::{Asap, Guarded};
-use crate::layout::energy::Jacobian;
 use crate::layout::exact::ExactLayout;
 use crate::layout::newton::{NewtonOptions, minimize};
 use crate::layout::problem::LayoutProblem;
@@ -157,8 +157,8 @@ fn to_unit_area(problem: &LayoutProblem, y: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::Arap;
     use crate::layout::disk::embed_disk;
-    use crate::layout::distance::Arap;
     use crate::layout::objective::guarded::minimize_guarded;
     use crate::layout::objective::rigid;
     use crate::{SeamlessMap, Tolerance};
