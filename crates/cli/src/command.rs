@@ -1,7 +1,7 @@
 //! What all commands have in common, and how one is run.
 
 use crate::args::RunArgs;
-use crate::failure::{Failure, Status};
+use crate::failure::{Failure, Status, print};
 use crate::job::{Cost, Job};
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
@@ -152,9 +152,9 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     job.check_interrupt(&input)?;
     batch.commit()?;
     match (run.json, run.quiet) {
-        (true, _) => text::print(&report)?,
+        (true, _) => print(&report)?,
         (false, true) => {}
-        (false, false) => text::print(&summary_text(command, &product, &plan, &cost))?,
+        (false, false) => print(&summary_text(command, &product, &plan, &cost))?,
     }
     Ok(command.status(&product))
 }

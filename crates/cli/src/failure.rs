@@ -1,6 +1,6 @@
 //! How a run ends: exit codes, and failures with their messages.
 
-use crate::text::as_options;
+use crate::text::{self, as_options};
 use seamstress::{Error, ErrorCategory, ErrorKind};
 use std::fmt;
 use std::process::ExitCode;
@@ -35,6 +35,12 @@ pub(crate) enum Failure {
     TimeLimit { input: String, limit: Duration },
     /// The work broke off.
     Panicked { input: String },
+}
+
+/// Prints lines on standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let unwritable = |cause| Failure::Usage(format!("cannot write to standard output: {cause}"));
+    text::print(text).map_err(unwritable)
 }
 
 impl From<Error> for Failure {

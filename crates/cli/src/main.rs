@@ -2,6 +2,7 @@
 
 mod args;
 mod command;
+mod command_line;
 mod commands;
 mod failure;
 mod job;
@@ -14,7 +15,7 @@ mod text;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let command = args::parse();
+    let command = command_line::parse();
     match command.run() {
         Ok(status) => status.into(),
         Err(failure) => {

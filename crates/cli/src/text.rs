@@ -1,17 +1,14 @@
 //! Text for people.
 
-use crate::failure::Failure;
 pub(crate) use seamstress::words::{counted, rounded};
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 
 /// Prints lines on standard output. A reader that has gone away is no fault.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+pub(crate) fn print(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
     let written = writeln!(out, "{text}").and_then(|()| out.flush());
     match written {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Usage(format!("cannot write to standard output: {cause}")))
-        }
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(cause),
         _ => Ok(()),
     }
 }
@@ -19,7 +16,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 /// Prints lines on standard error, if anyone reads it.
 pub(crate) fn report(text: &str) {
     // There is no better place to report that this fails.
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 /// A row of a summary: a label and its text.

@@ -32,6 +32,7 @@
 
 mod atomic;
 mod cones;
+mod detect;
 mod error;
 mod feature_lines;
 mod field;

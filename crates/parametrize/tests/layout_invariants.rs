@@ -9,11 +9,13 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parametrize::Sectors;
 use seamstress_parametrize::cut::{
-    Cut, DualTree, FramedCut, SeamGraph, Unfolding, connect_cones, regauge, turned_vertices, unfold,
+    Cut, DualTree, FramedCut, MatchedCut, SeamGraph, Unfolding, connect_cones, regauge,
+    turned_vertices, unfold,
 };
 use seamstress_parametrize::energy::{
     Energy, Jacobian, SymmetricDirichlet, Triangle, is_positive, largest_step, triangles,
 };
+use seamstress_parametrize::field::{ConePrescription, impose};
 use seamstress_parametrize::layout::arap::frames;
 use seamstress_parametrize::layout::barrier::barrier;
 use seamstress_parametrize::layout::exact::{ExactLayout, angle_sums};
@@ -159,23 +161,42 @@ fn pulling_back_is_the_adjoint_of_expanding() {
     }
 }
 
+/// Lays matchings out by the barrier alone: no flips, and the angles of the cones.
+fn assert_the_barrier_closes(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) {
+    let sectors = Sectors::unaligned(mesh);
+    let layout = unwatched(|watch| barrier(&sectors, metric, matched, watch)).unwrap();
+    assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
+    let triangles = triangles(mesh, metric, &matched.unfolding.cut);
+    assert!(triangles.iter().all(|t| t.doubled_area(&layout.z) > 0.0));
+    let sums = angle_sums(mesh, &triangles, &layout.z);
+    let index = matched.sector_indices(&sectors, metric);
+    for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
+        let expected = f64::from(4 - index[v]) * FRAC_PI_2;
+        assert!((sums[v] - expected).abs() < 0.7, "vertex {}: {} {expected}", v.0, sums[v]);
+    }
+}
+
 #[test]
 fn the_barrier_ends_with_the_angles_of_the_cones() {
     for soup in shapes() {
         let (mesh, metric) = surface(&soup);
-        let matched = rounded(&mesh, &metric).matched;
-        let index = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
-        let triangles = triangles(&mesh, &metric, &matched.unfolding.cut);
-        let closed =
-            unwatched(|watch| barrier(&Sectors::unaligned(&mesh), &metric, &matched, watch));
-        let layout = closed.unwrap();
-        assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
-        assert!(triangles.iter().all(|t| t.doubled_area(&layout.z) > 0.0));
-        let sums = angle_sums(&mesh, &triangles, &layout.z);
-        for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
-            let expected = f64::from(4 - index[v]) * FRAC_PI_2;
-            assert!((sums[v] - expected).abs() < 0.7, "vertex {}: {}", v.0, sums[v]);
-        }
+        assert_the_barrier_closes(&mesh, &metric, &rounded(&mesh, &metric).matched);
+    }
+}
+
+#[test]
+fn the_barrier_turns_seams_by_more_than_a_half_turn_the_right_way() {
+    // Eight cones side by side on a sphere: several units of index cross the same edges.
+    let (mesh, metric) = surface(&kit::uv_sphere(16, 10));
+    let sectors = Sectors::unaligned(&mesh);
+    for (ring, wide) in [(1, 4), (4, 4), (3, 8), (4, 2)] {
+        let cone = |k: u32| (1 + 16 * (ring + k / wide) + k % wide, 1);
+        let cones: Vec<(u32, i32)> = (0..8).map(cone).collect();
+        let prescription = ConePrescription::exactly(&mesh, &cones).unwrap();
+        let rounded = rounded(&mesh, &metric).matched;
+        let (matched, _) = impose(&sectors, &metric, &rounded, &prescription).unwrap();
+        assert!(matched.excess().any(|excess| excess.abs() > 3.0));
+        assert_the_barrier_closes(&mesh, &metric, &matched);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Who is whose neighbour in a quad mesh, and what keeps it from being a manifold.
 
-use crate::QuadMesh;
+use crate::mesh::QuadMesh;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -90,6 +90,16 @@ fn next(h: u32) -> u32 {
 /// The previous half-edge of the quad.
 fn prev(h: u32) -> u32 {
     if h.is_multiple_of(4) { h + 3 } else { h - 1 }
+}
+
+impl QuadMesh {
+    /// Who is whose neighbour.
+    ///
+    /// # Errors
+    /// Everything that keeps the quads from being an oriented manifold.
+    pub fn connectivity(&self) -> Result<QuadConnectivity, QuadFaults> {
+        QuadConnectivity::new(self)
+    }
 }
 
 impl QuadConnectivity {

@@ -1,7 +1,5 @@
 //! A mesh of quads.
 
-use crate::connectivity::{QuadConnectivity, QuadFaults};
-
 /// Vertices and quads, each quad counter-clockwise seen from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuadMesh {
@@ -54,13 +52,5 @@ impl QuadMesh {
     /// Corners of the quads.
     pub fn quads(&self) -> &[[u32; 4]] {
         &self.quads
-    }
-
-    /// Who is whose neighbour.
-    ///
-    /// # Errors
-    /// Everything that keeps the quads from being an oriented manifold.
-    pub fn connectivity(&self) -> Result<QuadConnectivity, QuadFaults> {
-        QuadConnectivity::new(self)
     }
 }

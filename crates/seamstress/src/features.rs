@@ -399,21 +399,23 @@ pub(crate) fn edges_of(mesh: &TriMesh, pairs: &[[u32; 2]]) -> EdgeSet {
     EdgeSet::new(mesh, pairs.iter().filter_map(edge))
 }
 
-/// Finds the edges that sources name on a surface.
-///
-/// # Errors
-/// If a file cannot be read, or a source names what is not an edge.
-pub(crate) fn resolve(surface: &Surface, features: &Features) -> Result<FeatureCurves, Error> {
-    let namer = Namer::new(surface);
-    let mut edges = EdgeSet::new(surface.mesh(), []);
-    let mut sources = Vec::new();
-    for source in &features.sources {
-        let found =
-            namer.edges_of(source).map_err(|error| error.at_stage(Some(Stage::Features)))?;
-        sources.push(FeatureSourceReport { source: source.to_string(), edges: found.len() });
-        edges = edges.union(surface.mesh(), &found);
+impl Surface {
+    /// Finds features and the curves that they form.
+    ///
+    /// # Errors
+    /// [`ErrorKind::BadFeatures`] where a source names what is not an edge, and [`ErrorKind::Unreadable`].
+    pub fn features(&self, features: &Features) -> Result<FeatureCurves, Error> {
+        let namer = Namer::new(self);
+        let mut edges = EdgeSet::new(self.mesh(), []);
+        let mut sources = Vec::new();
+        for source in &features.sources {
+            let found =
+                namer.edges_of(source).map_err(|error| error.at_stage(Some(Stage::Features)))?;
+            sources.push(FeatureSourceReport { source: source.to_string(), edges: found.len() });
+            edges = edges.union(self.mesh(), &found);
+        }
+        Ok(FeatureCurves::new(self, edges, sources))
     }
-    Ok(FeatureCurves::new(surface, edges, sources))
 }
 
 /// The edges that sources name on a surface, for other uses than features.

@@ -4,7 +4,6 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Finding, Severity, listing};
 use crate::polygons::Polygons;
 use crate::report::SurfaceReport;
-use crate::surface::Surface;
 use crate::words::counted;
 use seamstress_mesh::soup::{self, Facts, Fault, TriangleSoup, Triangulation, TriangulationNotes};
 use serde::{Deserialize, Serialize};
@@ -162,15 +161,12 @@ impl Inspection {
         &self.report
     }
 
-    /// The surface.
-    ///
-    /// # Errors
-    /// [`ErrorKind::NotASurface`], with every fault.
-    pub fn surface(self) -> Result<Surface, Error> {
+    /// Its parts and its report, unless it is no surface.
+    pub(crate) fn into_parts(self) -> Result<(Parts, SurfaceReport), Error> {
         if !self.is_surface() {
             return Err(self.refusal());
         }
-        Surface::new(self.parts, self.report)
+        Ok((self.parts, self.report))
     }
 
     fn refusal(self) -> Error {

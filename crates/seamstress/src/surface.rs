@@ -2,7 +2,6 @@
 
 use crate::context::Context;
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::{self, FeatureCurves, Features};
 use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
@@ -29,6 +28,23 @@ struct Inner {
     report: SurfaceReport,
     mesh: TriMesh,
     metric: Metric,
+}
+
+impl Inspection {
+    /// The surface.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotASurface`], with every fault.
+    pub fn surface(self) -> Result<Surface, Error> {
+        let (parts, report) = self.into_parts()?;
+        let soup = &parts.soup;
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
+            Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
+        })?;
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let inner = Arc::new(Inner { parts, report, mesh, metric });
+        Ok(Surface { inner, context: Context::default() })
+    }
 }
 
 impl Surface {
@@ -68,16 +84,6 @@ impl Surface {
         polygons: impl IntoIterator<Item = P>,
     ) -> Result<Self, Error> {
         Inspection::of_polygons(positions, polygons, &SurfaceOptions::default()).surface()
-    }
-
-    pub(crate) fn new(parts: Parts, report: SurfaceReport) -> Result<Self, Error> {
-        let soup = &parts.soup;
-        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
-            Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
-        })?;
-        let metric = Metric::from_positions(&mesh, &soup.positions);
-        let inner = Arc::new(Inner { parts, report, mesh, metric });
-        Ok(Self { inner, context: Context::default() })
     }
 
     /// The same surface whose work is watched, limited and spread over threads by a context.
@@ -127,14 +133,6 @@ impl Surface {
     /// Counts, topology, size, notes, warnings and repairs.
     pub fn report(&self) -> &SurfaceReport {
         &self.inner.report
-    }
-
-    /// Finds features and the curves that they form.
-    ///
-    /// # Errors
-    /// [`ErrorKind::BadFeatures`] where a source names what is not an edge, and [`ErrorKind::Unreadable`].
-    pub fn features(&self, features: &Features) -> Result<FeatureCurves, Error> {
-        features::resolve(self, features)
     }
 
     pub(crate) fn parts(&self) -> &Parts {

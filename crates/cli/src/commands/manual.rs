@@ -1,8 +1,6 @@
 //! `seamstress completions` and `seamstress man`: from the same definitions as the help.
 
-use crate::args::definition;
-use crate::failure::{Failure, Status};
-use crate::text;
+use crate::failure::{Failure, Status, print};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,10 +14,10 @@ pub(crate) struct CompletionsArgs {
 }
 
 impl CompletionsArgs {
-    pub(crate) fn run(&self) -> Result<Status, Failure> {
+    pub(crate) fn run(&self, mut definition: clap::Command) -> Result<Status, Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut definition(), "seamstress", &mut script);
-        text::print(String::from_utf8_lossy(&script).trim_end())?;
+        clap_complete::generate(self.shell, &mut definition, "seamstress", &mut script);
+        print(String::from_utf8_lossy(&script).trim_end())?;
         Ok(Status::Done)
     }
 }
@@ -32,12 +30,12 @@ pub(crate) struct ManArgs {
 }
 
 impl ManArgs {
-    pub(crate) fn run(&self) -> Result<Status, Failure> {
+    pub(crate) fn run(&self, definition: clap::Command) -> Result<Status, Failure> {
         let unwritable = |path: &Path, cause: std::io::Error| {
             Failure::Usage(format!("cannot write {}: {cause}", path.display()))
         };
         fs::create_dir_all(&self.folder).map_err(|cause| unwritable(&self.folder, cause))?;
-        clap_mangen::generate_to(definition(), &self.folder)
+        clap_mangen::generate_to(definition, &self.folder)
             .map_err(|cause| unwritable(&self.folder, cause))?;
         Ok(Status::Done)
     }

@@ -11,7 +11,7 @@ use crate::cut::MatchedCut;
 use crate::energy::{SymmetricDirichlet, triangles};
 use crate::features::Sectors;
 use crate::progress::{SolveError, Watch};
-use crate::quarter::unit;
+use crate::quarter::{rotation, unit};
 use num_complex::Complex64;
 use seamstress_mesh::Metric;
 
@@ -32,7 +32,13 @@ const BARRIER_WEIGHTS: [f64; 4] = [1.0, 1e2, 1e4, 1e6];
 /// Each weight is only a step on the path; the last one has converged by then.
 const BARRIER_STEPS: NewtonOptions = NewtonOptions { max_iterations: 3, tolerance: 1e-3 };
 
-/// Raises the penalty on the final matchings step by step.
+/// Most that a seam is turned in one stage, quarter turns: half of what would leave open which way round.
+const LARGEST_TURN: f64 = 1.0;
+/// Penalty weight while seams are turned: enough for them to follow.
+const TURNING_WEIGHT: f64 = 1e2;
+
+/// Turns the seams in stages from their isometric rotations to the final matchings, and raises the penalty on these step
+/// by step.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -45,16 +51,26 @@ pub fn barrier(
     let MatchedCut { unfolding, matching } = matched;
     let triangles = triangles(sectors.slit(), metric, &unfolding.cut);
     let share = 1.0 / triangles.len() as f64;
-    let rotations = matching.iter().map(|&r| unit(r)).collect();
-    let penalty = SeamPenalty::new(sectors, unfolding, rotations, 0.0);
+    let excess: Vec<f64> = matched.excess().collect();
+    let widest = excess.iter().fold(0.0f64, |widest, turn| widest.max(turn.abs()));
+    let stages = (widest / LARGEST_TURN).ceil().max(1.0) as usize;
+    let targets = |stage: usize| -> Vec<Complex64> {
+        let left = 1.0 - stage as f64 / stages as f64;
+        let seams = matching.iter().zip(&excess);
+        seams.map(|(&r, excess)| unit(r) * rotation(-left * excess)).collect()
+    };
+    let turning = (1..stages).map(|stage| (stage, TURNING_WEIGHT));
+    let path = turning.chain(BARRIER_WEIGHTS.map(|weight| (stages, weight)));
+    let penalty = SeamPenalty::new(sectors, unfolding, targets(0), 0.0);
     let space = LinearSpace::free(unfolding.cut.n_wedges);
     let mut problem = LayoutProblem::new(space, triangles, Some(penalty))?;
     let isometric = unfolding.positions(sectors, metric);
     let mut y = isometric.iter().flat_map(|z| [z.re, z.im]).collect();
     let mut steps = 0;
-    for (k, weight) in BARRIER_WEIGHTS.into_iter().enumerate() {
-        watch.tick(k as f64 / BARRIER_WEIGHTS.len() as f64)?;
+    for (k, (stage, weight)) in path.enumerate() {
+        watch.tick(k as f64 / (stages + BARRIER_WEIGHTS.len()) as f64)?;
         if let Some(penalty) = &mut problem.penalty {
+            penalty.rotations = targets(stage);
             penalty.weight = weight * share;
         }
         let solution = minimize(&mut problem, y, &SymmetricDirichlet, &BARRIER_STEPS, watch)?;

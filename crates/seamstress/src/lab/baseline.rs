@@ -1,6 +1,6 @@
 //! The classical baseline: the Poisson layout of a smooth field, which may have flips.
 
-use super::method::MethodOptions;
+use super::options::MethodOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
 use crate::finding::{Finding, listing};

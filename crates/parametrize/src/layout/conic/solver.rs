@@ -1,6 +1,6 @@
 //! Solvers of programs: their settings, and how they end.
 
-/// A solver of [`Program`](super::Program)s.
+/// A solver of conic programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
