@@ -10,8 +10,15 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const OURS: [&str; 2] = ["seamstress ", "cargo run --release -p seamstress-cli -- "];
 
 /// Other commands that documents may show.
-const OTHERS: [&str; 6] =
-    ["cargo ", "git ", "INSTA_UPDATE=", "target/release/", ".ci/", "SEAMSTRESS_"];
+const OTHERS: [&str; 7] = [
+    "cargo ",
+    "git ",
+    "INSTA_UPDATE=",
+    "target/release/",
+    ".ci/",
+    "SEAMSTRESS_",
+    "seamstress-bench ",
+];
 
 /// Stand-ins of documents for numbers and names, and what is typed in their place.
 const STAND_INS: [(&str, &str); 4] = [("N", "100"), ("X", "1"), ("L", "1"), ("NAME", "arap")];
