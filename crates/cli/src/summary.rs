@@ -444,12 +444,10 @@ pub(crate) fn measure_table(
         let mark = |is_compared: bool, x: f64| {
             format!("{}{}", rounded(x), if is_compared && has_star(measure) { "*" } else { " " })
         };
-        let is_scaled =
-            !matches!(measure, Measure::TauTilde | Measure::AsapMax | Measure::Dilatation);
         table_row([
             measure.name().to_owned(),
             rounded(measured.ideal),
-            if is_scaled { rounded(measured.scale) } else { "-".into() },
+            if measure.has_scale() { rounded(measured.scale) } else { "-".into() },
             mark(measure.is_mean(), measured.mean),
             mark(!measure.is_mean(), measured.max),
             rounded(percentiles.p50),

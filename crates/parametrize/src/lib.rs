@@ -1,24 +1,65 @@
 //! Direct seamless parametrization of triangle meshes.
 //!
-//! The way of the data, each stage a module that takes values and returns new ones:
+//! Data flow; each stage is a module that takes values and returns new ones:
 //!
-//! [`cut`] -> [`rounding`] (alternating with [`layout`]) -> exact [`layout`] -> [`map`]
+//! `cut` -> `rounding` (alternating with `layout`) -> exact `layout` -> [`map`]
 //!
-//! A [`field`] can take the place of the first two. [`make_map`] runs them all; [`SeamlessMap::certify`] is the only door to a map.
+//! A given [`field`] replaces the rounding; the mesh is still cut. [`make_map`] runs all stages, and
+//! [`SeamlessMap::certify`] is the only way to construct a map.
+
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(
+        dead_code,
+        unreachable_pub,
+        unused_imports,
+        reason = "tests and benches use more of the stages than the method does"
+    )
+)]
 
 pub mod consistency;
-pub mod cut;
-pub mod energy;
-pub mod features;
 pub mod field;
-pub mod layout;
 pub mod map;
 mod method;
-pub mod mixed_integer;
 mod ordered;
 pub mod progress;
 pub mod quality;
+
+// The stages are private, but to the crates that build on them, to tests and to benches.
+#[cfg(not(feature = "internals"))]
+mod cut;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod cut;
+#[cfg(not(feature = "internals"))]
+mod energy;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod energy;
+#[cfg(not(feature = "internals"))]
+mod features;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod features;
+#[cfg(not(feature = "internals"))]
+mod layout;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod layout;
+#[cfg(not(feature = "internals"))]
+mod mixed_integer;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod mixed_integer;
+#[cfg(not(feature = "internals"))]
+mod quarter;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod quarter;
+#[cfg(not(feature = "internals"))]
+mod rounding;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod rounding;
 
 pub use features::{ReleaseReason, ReleasedFeature, Sectors};
@@ -36,4 +77,6 @@ pub use method::{
     Purpose, Relayout, RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap,
     lay_out_disk, make_aligned_map, make_field_map, make_map, make_map_from, relayout,
 };
+pub use mixed_integer::{MixedIntegerOptions, MixedIntegerStats};
 pub use progress::{Observer, Progress, Stage};
+pub use rounding::{RoundingOptions, RoundingStrategy};

@@ -89,6 +89,7 @@ fn parametrize(
     log.count(iterations);
     let route = layout.route;
     let mut candidates = vec![domain.corner_uvs(&layout)];
+    // Where edges were made longer to open thin triangles, back to their own lengths.
     let layout = in_surface_metric(&domain, layout, watch)?;
     candidates.push(domain.corner_uvs(&layout));
     if let Some(objective) = options.objective {

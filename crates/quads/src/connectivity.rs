@@ -61,6 +61,7 @@ impl std::error::Error for QuadFaults {}
 /// A vertex that is not regular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct IrregularVertex {
     /// The vertex.
     pub vertex: u32,

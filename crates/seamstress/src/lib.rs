@@ -44,7 +44,7 @@
 //! | `parallel` | yes | threads |
 //! | `metis` | yes | nested dissection by METIS, in C; else the minimum-degree ordering of faer |
 //! | `clarabel` | yes | a second solver of conic programs, where ours fails |
-//! | `lab` | | what exists to study or compare |
+//! | `lab` | | research options and baselines, for experiments and comparisons |
 //! | `schema` | | JSON schemas |
 //! | `clap` | | options as command-line arguments |
 
@@ -119,8 +119,8 @@ pub use surface::Surface;
 #[cfg(feature = "io")]
 #[doc(hidden)]
 pub use seamstress_io::{AtomicFile, Format};
+pub use seamstress_parametrize::MixedIntegerStats;
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
-pub use seamstress_parametrize::mixed_integer::MixedIntegerStats;
 pub use seamstress_parametrize::quality::Measure;
 pub use seamstress_parametrize::{
     Alignment, ComponentStats, ConicStats, Objective, RelayoutStats, ReleasedFeature, Stretch,

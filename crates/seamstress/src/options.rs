@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::features::{FeatureSource, Features};
-use seamstress_parametrize::rounding::RoundingOptions;
+use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
 use seamstress_quantize as quantize;
 use serde::{Deserialize, Serialize};
@@ -30,9 +30,9 @@ pub struct MapOptions {
         default_value_t = Self::default().cone_bias))]
     pub cone_bias: f64,
 
-    /// Distortion that may be paid for one cone fewer when cones are cleaned up, as mean symmetric
-    /// Dirichlet energy (4 is an isometry); 0 leaves the cones as they were rounded [default: 0.0006;
-    /// for quads the share of the surface that four of them have, but at least 0.0015]
+    /// How much the mean symmetric Dirichlet energy (4 is no distortion) may rise for each cone removed in clean-up;
+    /// 0 turns clean-up off [default: 0.0006; for quads the area of four of them as a share of the surface, at least
+    /// 0.0015]
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative))]
     pub cone_price: Option<f64>,
 
@@ -46,14 +46,14 @@ pub struct MapOptions {
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
     pub no_tau_polish: bool,
 
-    /// Stop that polish after this many seconds; the map then depends on the machine [default: no
+    /// Stop the tau polish after this many seconds; the map then depends on the machine [default: no
     /// limit]
     #[serde(with = "seconds")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = parse::seconds))]
     pub polish_time: Option<Duration>,
 
-    /// Maximum relative increase of the mean symmetric Dirichlet energy allowed to that polish
+    /// Maximum relative increase of the mean symmetric Dirichlet energy allowed to the tau polish
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
         default_value_t = Self::default().max_energy_rise))]
     pub max_energy_rise: f64,
@@ -136,6 +136,7 @@ impl MapOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum GridSize {
     /// About so many quads in all.
     Quads(f64),
@@ -188,7 +189,7 @@ impl GridSize {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum GridRounding {
-    /// The nearest whole numbers in the symmetric Dirichlet energy that keep cones apart
+    /// The integers that raise the symmetric Dirichlet energy least while keeping cones apart
     #[default]
     Constrained,
     /// One number after the other in the energy that preserves Jacobians; often fails

@@ -43,8 +43,8 @@ pub(crate) struct ExtractArgs {
     /// Keep vertices on these feature edges; may be given several times
     ///
     /// They are those that the map aligns, from the sources of `quad`: angle:DEGREES, boundary, lines,
-    /// edges:A-B,..., pairs:FILE or sharp:FILE. Where the map has a vertex of the quads on one, that slides
-    /// along it when quads are untangled or smoothed. Those that the quads do not follow are reported as dropped.
+    /// edges:A-B,..., pairs:FILE or sharp:FILE. A quad vertex that the map places on such an edge only slides
+    /// along it during untangling and smoothing. Those that the quads do not follow are reported as dropped.
     #[arg(long, value_name = "SOURCE")]
     features: Vec<FeatureSource>,
 

@@ -4,6 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "kind")]
+#[non_exhaustive]
 pub enum Route {
     /// The Poisson layout of a field, or local/global iterations from it; it may have flips.
     Poisson,

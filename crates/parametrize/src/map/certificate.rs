@@ -25,6 +25,7 @@ pub struct Cone {
 
 /// An interior edge across which the UVs jump.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SeamEdge {
     /// Left half-edge; its twin is on the right.
     #[serde(skip)]
@@ -73,7 +74,11 @@ pub struct SeamlessMap {
 }
 
 impl SeamlessMap {
-    /// Checks a map given by one UV per corner (three per face, in the faces' order).
+    /// Checks a map given by one UV per corner (three per face, in the faces' order): finite UVs; every triangle of
+    /// positive orientation, by an exact test; the two images of every interior edge equal up to a quarter turn and a
+    /// shift; every interior angle sum a multiple of a quarter turn; indices that add up to 4χ on every component.
+    ///
+    /// See `docs/theory/03-certificate.md` for the tolerances.
     ///
     /// # Errors
     /// Every violation, each naming its element.

@@ -55,6 +55,7 @@ pub struct ComponentStats {
 /// Cost of one stage.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StageStats {
     /// The stage.
     pub stage: Stage,

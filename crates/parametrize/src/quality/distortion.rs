@@ -7,6 +7,7 @@ use seamstress_mesh::{Metric, TriMesh};
 
 /// Distortion of a whole map.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Distortion {
     /// `sqrt(sigma_1 max / sigma_2 min)`, eq. (3); infinite when a triangle is flipped or collapsed,
     /// not a number when the source has no triangle with area.

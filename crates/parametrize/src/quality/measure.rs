@@ -9,6 +9,7 @@ use crate::energy::{Arap, Energy, SymmetricDirichlet};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Measure {
     /// `max(sigma_1, 1 / sigma_2)`, eq. (1), of the map as it is scaled.
     TauTilde,
@@ -33,6 +34,7 @@ pub enum Measure {
 /// How the values of the triangles become one figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Aggregate {
     /// The mean over the source's area.
     Mean,
@@ -80,13 +82,20 @@ impl Measure {
     pub fn aggregate(self) -> Aggregate {
         match self {
             Self::SymmetricDirichlet | Self::Arap | Self::Asap => Aggregate::Mean,
-            _ => Aggregate::Max,
+            Self::TauTilde | Self::Tau | Self::ArapMax | Self::AsapMax | Self::Dilatation => {
+                Aggregate::Max
+            }
         }
     }
 
     /// Whether maps are compared by its mean, not by its maximum.
     pub fn is_mean(self) -> bool {
         self.aggregate() == Aggregate::Mean
+    }
+
+    /// Whether its values are taken at a global scale of its own, not of the map as it is.
+    pub fn has_scale(self) -> bool {
+        !matches!(self, Self::TauTilde | Self::AsapMax | Self::Dilatation)
     }
 
     /// The value of a triangle with signed singular values `s1 >= |s2|`.
@@ -111,8 +120,7 @@ impl Measure {
         }
     }
 
-    /// The global scale at which the values are taken; 1 for the measures that do not depend on it, and for
-    /// [`Measure::TauTilde`], which takes the map as it is. Where flipped triangles have no finite value, the
+    /// The global scale at which the values are taken; 1 for the measures without one ([`Measure::has_scale`]). Where flipped triangles have no finite value, the
     /// others decide.
     pub fn scale(self, singular: &SingularValues) -> f64 {
         match self {

@@ -6,6 +6,7 @@ use seamstress_mesh::{Face, FaceData};
 
 /// Median, 95th and 99th percentile over triangles.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Percentiles {
     /// Half of the triangles are below.
     pub p50: f64,

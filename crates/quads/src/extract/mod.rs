@@ -75,6 +75,7 @@ pub struct Extraction {
 /// A cone of the map in the quad mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct QuadCone {
     /// The vertex of the quad mesh.
     pub vertex: u32,

@@ -21,6 +21,7 @@ pub(super) enum Site {
 
 /// A point of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SurfacePoint {
     /// The face it lies on.
     pub face: u32,

@@ -8,6 +8,7 @@ use seamstress_parallel::prelude::*;
 /// Distances from points of one surface to another surface.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Distance {
     /// The largest, mesh units.
     pub max: f64,
@@ -20,6 +21,7 @@ pub struct Distance {
 /// Distances both ways between a mesh and its source.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SurfaceDistance {
     /// From the mesh to the source.
     pub to_source: Distance,

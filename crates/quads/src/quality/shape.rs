@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 /// Angles at the corners of polygons, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Angles {
     /// The smallest.
     pub min: f64,
@@ -23,6 +24,7 @@ pub struct Angles {
 /// Lengths of edges, each counted once, in mesh units.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct EdgeLengths {
     /// The shortest.
     pub min: f64,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 /// Counts of a polygon mesh.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Topology {
     /// Vertices that a polygon has.
     pub vertices: usize,

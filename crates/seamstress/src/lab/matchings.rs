@@ -57,6 +57,7 @@ const SETTLED: f64 = 1e-6;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Norm {
     /// Sum of absolute values: concentrates the change
     L1,

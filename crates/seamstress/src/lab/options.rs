@@ -4,8 +4,8 @@ use super::start::StartOptions;
 use crate::error::Error;
 use crate::options::{MapOptions, seconds};
 use seamstress_parametrize as parametrize;
-use seamstress_parametrize::mixed_integer::MixedIntegerOptions;
-use seamstress_parametrize::rounding::RoundingStrategy;
+use seamstress_parametrize::MixedIntegerOptions;
+use seamstress_parametrize::RoundingStrategy;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 

@@ -266,12 +266,7 @@ impl Figure {
     /// measure has none. Frames fix the scale themselves.
     fn rescale(&self, layout: &ExactLayout, y: &mut [f64]) {
         let Self::Measured(measure) = *self else { return };
-        let measure = match measure {
-            Measure::TauTilde | Measure::AsapMax | Measure::Dilatation => {
-                Measure::SymmetricDirichlet
-            }
-            scaled => scaled,
-        };
+        let measure = if measure.has_scale() { measure } else { Measure::SymmetricDirichlet };
         let scale = measure.scale(&layout.singular_values(y));
         y.iter_mut().for_each(|x| *x *= scale);
     }

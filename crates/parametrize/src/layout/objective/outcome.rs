@@ -9,6 +9,7 @@ use seamstress_linalg::NotPositiveDefinite;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "kind")]
+#[non_exhaustive]
 pub enum Ending {
     /// The objective settled to the tolerance, as far as can be estimated from how it fell.
     Converged,
