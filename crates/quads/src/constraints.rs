@@ -74,18 +74,15 @@ impl Domain {
         self.places[v as usize] == Place::Fixed
     }
 
-    /// Whether a vertex may go anywhere.
-    pub(crate) fn is_free(&self, v: u32) -> bool {
-        self.places[v as usize] == Place::Anywhere
-    }
-
-    /// The point nearest to a target among those where a vertex may be; of fixed ones, on the surface.
-    pub(crate) fn nearest(&self, v: u32, target: Point) -> Point {
+    /// The point nearest to a target among those where a vertex may be, and the unit normal of the surface there; of
+    /// fixed ones, on the surface.
+    pub(crate) fn place(&self, v: u32, target: Point) -> (Point, Point) {
         let Place::OnCurve(curve) = self.places[v as usize] else {
             return self.surface.nearest(target);
         };
         let found = self.curves[curve as usize].project_local_point(vector(target), false);
-        [found.point.x, found.point.y, found.point.z]
+        let at = [found.point.x, found.point.y, found.point.z];
+        (at, self.surface.normal(at))
     }
 
     /// The unit normal of the surface at a point of it.

@@ -73,10 +73,7 @@ pub fn smooth(
     let mut state = State { connectivity: &connectivity, quads: mesh.quads(), positions, normals };
     let mut refused = 0;
     for _ in 0..options.rounds {
-        let on_surface = |&v: &u32| {
-            let at = domain.nearest(v, state.target(v));
-            (at, domain.normal(at))
-        };
+        let on_surface = |&v: &u32| domain.place(v, state.target(v));
         let targets: Vec<(Point, Point)> = movable.par_iter().map(on_surface).collect();
         refused = movable.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
     }

@@ -48,17 +48,20 @@ impl Surface {
         }
     }
 
-    /// The nearest point.
-    pub(crate) fn nearest(&self, at: Point) -> Point {
-        let found = self.bvh.project_local_point(vector(at), false);
-        [found.point.x, found.point.y, found.point.z]
+    /// The nearest point, and the unit normal there: of its face, or the mean over the faces of its edge or around
+    /// its vertex; zero where there is none.
+    pub(crate) fn nearest(&self, at: Point) -> (Point, Point) {
+        let (found, (face, location)) =
+            self.bvh.project_local_point_and_get_location(vector(at), false);
+        ([found.point.x, found.point.y, found.point.z], self.normal_at(face, location))
     }
 
-    /// The unit normal at the nearest point: of its face, or the mean over the faces of its edge or around
-    /// its vertex; zero where there is none.
+    /// The unit normal at the nearest point.
     pub(crate) fn normal(&self, at: Point) -> Point {
-        let (_, (face, location)) =
-            self.bvh.project_local_point_and_get_location(vector(at), false);
+        self.nearest(at).1
+    }
+
+    fn normal_at(&self, face: u32, location: TrianglePointLocation) -> Point {
         let Some(&[a, b, c]) = self.bvh.indices().get(face as usize) else { return [0.0; 3] };
         let weights = match location {
             TrianglePointLocation::OnVertex(k) => [0, 1, 2].map(|i| f64::from(i == k)),
@@ -79,6 +82,18 @@ impl Surface {
 
 fn edge(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
+}
+
+/// The point of a triangle nearest to a point, and the weights of its corners there.
+pub(crate) fn nearest_in_triangle(at: Point, corners: [Point; 3]) -> (Point, [f64; 3]) {
+    let [a, b, c] = corners.map(vector);
+    let (found, location) =
+        Triangle::new(a, b, c).project_local_point_and_get_location(vector(at), false);
+    let weights = match location {
+        TrianglePointLocation::OnVertex(k) => [0, 1, 2].map(|i| f64::from(i == k)),
+        other => other.barycentric_coordinates().unwrap_or([1.0 / 3.0; 3]),
+    };
+    ([found.point.x, found.point.y, found.point.z], weights)
 }
 
 /// Distance of a point from a triangle.
@@ -108,7 +123,7 @@ mod tests {
             let gap = sub(normal, expected).map(f64::abs);
             assert!(gap.iter().all(|&x| x < 1e-12), "{at:?}: {normal:?}");
         }
-        assert_eq!(roof.nearest([1.0, 2.0, 3.0]), [1.0, 2.0, 0.0]);
+        assert_eq!(roof.nearest([1.0, 2.0, 3.0]).0, [1.0, 2.0, 0.0]);
         assert!(Surface::new(&positions, &[]).is_err());
     }
 }

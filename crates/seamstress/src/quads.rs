@@ -13,7 +13,7 @@ use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
-    MendOptions, QuadConnectivity, QuadFaults, SmoothOptions, manifold_quads,
+    QuadConnectivity, QuadFaults, SmoothOptions, UntangleOptions, manifold_quads,
 };
 use seamstress_quantize::{IntegerCertificate, IntegerStats};
 use serde::Serialize;
@@ -392,11 +392,11 @@ impl Surface {
         let mut untangled = Untangled { moved: 0, largest_move: 0.0 };
         if !options.raw {
             let settings =
-                MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
-            let mended = quads::mend(&extraction.mesh, surface, &settings)
+                UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
+            let shaped = quads::untangle(&extraction.mesh, surface, &settings)
                 .map_err(|cause| failure(&cause))?;
-            untangled = Untangled { moved: mended.moved, largest_move: mended.largest_move };
-            extraction.mesh = mended.mesh;
+            untangled = Untangled { moved: shaped.moved, largest_move: shaped.largest_move };
+            extraction.mesh = shaped.mesh;
         }
         if options.smooth > 0 {
             let settings = SmoothOptions { rounds: options.smooth, constraints };

@@ -11,7 +11,7 @@ use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, split_polygons, surface_distance,
 };
 use seamstress_quads::{
-    Constraints, MendOptions, QuadMesh, SmoothOptions, manifold_quads, mend, smooth,
+    Constraints, QuadMesh, SmoothOptions, UntangleOptions, manifold_quads, smooth, untangle,
 };
 use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
 use std::error::Error;
@@ -165,11 +165,12 @@ fn untangled(
     constraints: &Constraints,
 ) -> Result<QuadMesh, Box<dyn Error>> {
     let start = Instant::now();
-    let options = MendOptions { constraints: constraints.clone(), ..MendOptions::default() };
-    let mended = mend(quads, source, &options)?;
+    let options =
+        UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
+    let shaped = untangle(quads, source, &options)?;
     let seconds = start.elapsed().as_secs_f64();
-    progress(&format!("untangled in {seconds:.2} s: {} vertices moved", mended.moved));
-    Ok(mended.mesh)
+    progress(&format!("untangled in {seconds:.2} s: {} vertices moved", shaped.moved));
+    Ok(shaped.mesh)
 }
 
 fn smoothed(

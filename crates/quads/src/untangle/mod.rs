@@ -1,0 +1,184 @@
+//! Untangling of the worst quads along the surface they approximate.
+//!
+//! Quads with a corner far from a right angle, and those turned against the surface, are taken one after the other,
+//! each with some rings of quads around it: a [`Patch`]. The movable vertices of a patch minimise a barrier energy of
+//! all its corners ([`Energy`]) along the surface, by a quasi-Newton method whose regularisation is lowered step by
+//! step ([`untangled`]). A few sweeps over all such quads, from small patches to large ones, bring most of them into
+//! shape.
+
+mod descent;
+mod energy;
+mod patch;
+mod score;
+#[cfg(test)]
+mod tests;
+
+use crate::constraints::{Constraints, Domain};
+use crate::smooth::SmoothError;
+use crate::surface::Surface;
+use crate::vector::{Point, norm, sub};
+use crate::{QuadConnectivity, QuadMesh};
+use descent::untangled;
+use patch::Patch;
+use score::worst_corner;
+use seamstress_parallel::prelude::*;
+
+/// What to untangle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UntangleOptions {
+    /// Quads with a corner further from a right angle than this are improved, degrees.
+    pub deviation: f64,
+    /// Vertices that stay where they are, or on a curve.
+    pub constraints: Constraints,
+}
+
+impl Default for UntangleOptions {
+    fn default() -> Self {
+        Self { deviation: 45.0, constraints: Constraints::default() }
+    }
+}
+
+/// An untangled mesh.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Untangling {
+    /// The mesh, with the quads as they were.
+    pub mesh: QuadMesh,
+    /// Vertices that were moved.
+    pub moved: usize,
+    /// The largest distance of a vertex from where it was, mesh units.
+    pub largest_move: f64,
+}
+
+/// How large a patch is, and what it is for.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    /// Rings of vertices around the quad that move with its own.
+    rings: usize,
+    /// How far the quads around a vertex may go from the point it comes from, in mean edges of the patch.
+    stray: f64,
+    /// Whether every quad beyond the bound is improved, or only those turned against the surface or with a reflex corner.
+    for_angles: bool,
+}
+
+/// A sweep goes through these. For the sake of an angle no tip or crease is cut off by more than a tenth of an edge;
+/// for the sake of validity more is given up, step by step.
+const REACHES: [Reach; 5] = [
+    Reach { rings: 0, stray: 0.1, for_angles: true },
+    Reach { rings: 1, stray: 0.1, for_angles: true },
+    Reach { rings: 1, stray: 0.4, for_angles: false },
+    Reach { rings: 2, stray: 1.0, for_angles: false },
+    Reach { rings: 3, stray: 2.0, for_angles: false },
+];
+/// Badness of a corner of 180 degrees.
+const STRAIGHT: f64 = 1.0;
+/// Sweeps, at most. Patches overlap, and one may give another room.
+const SWEEPS: usize = 6;
+
+/// Moves the vertices of badly shaped quads along a surface until their corners are better.
+///
+/// Quads that are turned against the surface, or have a corner further from a right angle than asked for, are
+/// improved together with the quads around them; all other vertices stay, and fixed ones. A patch is changed only
+/// if fewer of its quads are inverted or crossed afterwards, or as many and fewer reflex, or as many and fewer too far
+/// from a rectangle, or as many and the sum of all corners is better.
+///
+/// Patches are improved one by one in the order of the quads: the result does not depend on the number of threads.
+///
+/// # Errors
+/// If the quads are no manifold or the surface has no triangle.
+///
+/// # Source
+/// The barrier is that of Garanzha, Kaporin, Kudryavtseva, Protais, Ray and Sokolov 2021, *Foldover-free maps in 50
+/// lines of code*, for the corners of quads along a surface.
+pub fn untangle(
+    mesh: &QuadMesh,
+    surface: (&[Point], &[[u32; 3]]),
+    options: &UntangleOptions,
+) -> Result<Untangling, SmoothError> {
+    untangle_within(mesh, surface, options, &REACHES)
+}
+
+fn untangle_within(
+    mesh: &QuadMesh,
+    surface: (&[Point], &[[u32; 3]]),
+    options: &UntangleOptions,
+    reaches: &[Reach],
+) -> Result<Untangling, SmoothError> {
+    let connectivity = mesh.connectivity()?;
+    let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
+    let homes = mesh.positions();
+    let domain = Domain::new(surface, &connectivity, homes.len(), &options.constraints);
+    let site = |&at: &Point| Site { at, normal: domain.normal(at) };
+    let mut state = State {
+        connectivity: &connectivity,
+        quads: mesh.quads(),
+        domain: &domain,
+        homes,
+        sites: homes.par_iter().map(site).collect(),
+        sides: patch::side_lengths(&connectivity, mesh),
+    };
+    let deviation = options.deviation.to_radians().sin();
+    for _ in 0..SWEEPS {
+        let bound = |reach: &Reach| if reach.for_angles { deviation } else { STRAIGHT };
+        let improved: usize = reaches.iter().map(|reach| state.sweep(reach, bound(reach))).sum();
+        if improved == 0 {
+            break;
+        }
+    }
+    let positions: Vec<Point> = state.sites.iter().map(|site| site.at).collect();
+    let moves = || positions.iter().zip(homes).map(|(&to, &from)| norm(sub(to, from)));
+    Ok(Untangling {
+        moved: moves().filter(|&length| length > 0.0).count(),
+        largest_move: moves().fold(0.0, f64::max),
+        mesh: QuadMesh::from_parts(positions, mesh.quads().to_vec()),
+    })
+}
+
+/// Where a vertex is, and the unit normal of the surface there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Site {
+    at: Point,
+    normal: Point,
+}
+
+/// All quads, and where their vertices are.
+struct State<'a> {
+    connectivity: &'a QuadConnectivity,
+    quads: &'a [[u32; 4]],
+    domain: &'a Domain,
+    /// Where the vertices come from.
+    homes: &'a [Point],
+    sites: Vec<Site>,
+    /// The lengths that the sides of each quad should have: of sides 0 and 2, and of sides 1 and 3.
+    sides: Vec<[f64; 2]>,
+}
+
+impl State<'_> {
+    /// Improves the patches around all quads worse than a bound; says how many of them became better.
+    fn sweep(&mut self, reach: &Reach, bound: f64) -> usize {
+        let is_bad = |state: &Self, q: u32| worst_corner(state.corners(q)) > bound;
+        let quads: Vec<u32> = (0..self.quads.len() as u32).collect();
+        let bad: Vec<u32> = quads.into_par_iter().filter(|&q| is_bad(self, q)).collect();
+        let mut improved = 0;
+        for q in bad {
+            if is_bad(self, q) {
+                let patch = Patch::new(self, q, reach);
+                if let Some(sites) = untangled(self.domain, &patch, bound) {
+                    improved += 1;
+                    for (&v, site) in patch.vertices.iter().zip(sites) {
+                        self.sites[v as usize] = site;
+                    }
+                }
+            }
+        }
+        improved
+    }
+
+    fn corners(&self, quad: u32) -> [Site; 4] {
+        self.quads[quad as usize].map(|v| self.sites[v as usize])
+    }
+
+    fn quads_around(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
+        self.connectivity.outgoing(v).map(|h| h / 4)
+    }
+}
