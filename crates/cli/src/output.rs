@@ -1,7 +1,7 @@
 //! Output files: checked before the work, written after it, put in place together.
 
 use crate::failure::Failure;
-use seamstress::{AtomicFile, Error, Format};
+use seamstress::{AtomicFile, Error, Output};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -34,23 +34,13 @@ impl Target {
 
     /// The name must not promise a format that is not written.
     fn refuse_other_format(&self) -> Result<(), Failure> {
-        let (what, formats, endings) = match self.kind {
-            Kind::Map => ("maps", &[Format::Obj][..], "OBJ"),
-            Kind::Quads => ("quad meshes", &[Format::Obj, Format::Ply][..], "OBJ or PLY"),
-            Kind::Report | Kind::Cones | Kind::Field | Kind::Matching | Kind::Picture => {
-                return Ok(());
-            }
+        let output = match self.kind {
+            Kind::Map => Output::Map,
+            Kind::Quads => Output::Quads,
+            Kind::Picture => Output::Picture,
+            Kind::Report | Kind::Cones | Kind::Field | Kind::Matching => return Ok(()),
         };
-        match Format::from_path(&self.path) {
-            Some(format) if !formats.contains(&format) => {
-                let names = endings.to_lowercase().replace("or ", "or .");
-                Err(Failure::Usage(format!(
-                    "{}: {what} are written as {endings}, not {format}; give the output a name in .{names}",
-                    self.path.display()
-                )))
-            }
-            _ => Ok(()),
-        }
+        Ok(output.check_name(&self.path)?)
     }
 }
 

@@ -18,15 +18,57 @@ impl From<WriteError> for Error {
     }
 }
 
+/// What is written into a file of a format that its name says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Output {
+    /// A map, as OBJ.
+    Map,
+    /// Quads, as OBJ or PLY.
+    Quads,
+    /// A picture, as PNG.
+    Picture,
+}
+
+impl Output {
+    /// Refuses a name whose ending promises another format. A name without one promises none.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`].
+    pub fn check_name(self, path: &Path) -> Result<(), Error> {
+        let (what, endings) = match self {
+            Self::Map => ("maps", &["obj"][..]),
+            Self::Quads => ("quad meshes", &["obj", "ply"][..]),
+            Self::Picture => ("pictures", &["png"][..]),
+        };
+        let Some(ending) = path.extension().map(|ending| ending.to_string_lossy()) else {
+            return Ok(());
+        };
+        if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
+            return Ok(());
+        }
+        let text = format!(
+            "{}: {what} are written as {}, not {}; give the output a name in .{}",
+            path.display(),
+            endings.join(" or ").to_uppercase().replace(" OR ", " or "),
+            ending.to_uppercase(),
+            endings.join(" or .")
+        );
+        Err(Error::new(ErrorKind::Unwritable, text).at_stage(Some(Stage::Files)))
+    }
+}
+
 pub(crate) fn read_mesh(path: &Path) -> Result<PolygonMesh, Error> {
     Ok(seamstress_io::read_mesh(path)?)
 }
 
-/// Writes a file that appears only when it is complete.
+/// Writes a file of the format that its name says, which appears only when it is complete.
 pub(crate) fn write(
     path: &Path,
+    output: Output,
     content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
 ) -> Result<(), Error> {
+    output.check_name(path)?;
     let mut file = AtomicFile::create(path)?;
     let written = content(&mut file).and_then(|()| file.flush());
     written.map_err(|cause| Error::new(ErrorKind::Unwritable, cause.to_string()))?;

@@ -87,6 +87,9 @@ pub use features::{
 pub use field::{CrossField, EdgeMatching, FieldLoop, FieldReport, FullTurns};
 #[cfg(feature = "io")]
 pub use field::{write_cones, write_matchings};
+#[cfg(feature = "io")]
+#[doc(hidden)]
+pub use files::Output;
 #[doc(hidden)]
 pub use finding::listing;
 pub use finding::{Elements, Finding, Severity};
@@ -118,7 +121,7 @@ pub use surface::Surface;
 
 #[cfg(feature = "io")]
 #[doc(hidden)]
-pub use seamstress_io::{AtomicFile, Format};
+pub use seamstress_io::AtomicFile;
 pub use seamstress_parametrize::MixedIntegerStats;
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 pub use seamstress_parametrize::quality::Measure;

@@ -48,6 +48,13 @@ fn quads_are_written_as_ply_too_and_as_nothing_else() {
     let run = folder.expect(2, &["extract", "map.obj", "-o", "q.stl"]);
     assert!(run.stderr.contains("quad meshes are written as OBJ or PLY, not STL"), "{run:?}");
     assert!(run.stderr.contains("in .obj or .ply"), "{run:?}");
+    for (arguments, refusal) in [
+        (["-o", "q.glb"].as_slice(), "quad meshes are written as OBJ or PLY, not GLB"),
+        (&["-o", "q.obj", "--picture", "q.jpg"], "pictures are written as PNG, not JPG"),
+    ] {
+        let run = folder.expect(2, &[&["extract", "map.obj"], arguments].concat());
+        assert!(run.stderr.contains(refusal), "{run:?}");
+    }
 }
 
 #[test]
