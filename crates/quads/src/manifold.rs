@@ -1,128 +1,163 @@
-//! Integer maps fine enough for their quads to be a manifold.
+//! Integer-grid maps whose quads are a manifold.
 
-use crate::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, QuadFaults, extract};
-use seamstress_mesh::TriMesh;
-use seamstress_quantize::{GridSize, IntegerSolution};
+use crate::{
+    ExtractError, ExtractOptions, Extraction, QuadConnectivity, QuadFault, QuadFaults, extract,
+};
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Component, TriMesh};
+use seamstress_parametrize::SeamlessMap;
+use seamstress_parametrize::progress::Observer;
+use seamstress_quantize::{
+    Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, quantize_accepting,
+};
 
-/// An integer map and its quads, an oriented manifold.
+/// An integer-grid map and its quads, an oriented manifold.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ManifoldQuads {
     /// The map.
-    pub integer: IntegerSolution,
+    pub quantization: Quantization,
     /// Its quads.
     pub extraction: Extraction,
     /// Who is whose neighbour among them.
     pub connectivity: QuadConnectivity,
-    /// Coarser maps whose quads were no manifold.
-    pub refinements: usize,
 }
 
 /// Why there are no such quads.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum ManifoldError<E> {
-    /// There is no integer map.
+pub enum ManifoldError {
+    /// There is no integer-grid map.
     #[error(transparent)]
-    Integer(E),
+    Quantize(#[from] QuantizeError),
     /// There are no quads.
     #[error(transparent)]
     Extract(#[from] ExtractError),
-    /// They are no manifold, however fine the grid.
-    #[error("the quads are no manifold: {0}")]
-    NoManifold(#[from] QuadFaults),
+    /// They are no manifold on any grid.
+    #[error("the quads are no manifold: {faults}")]
+    NoManifold {
+        /// What is wrong with those of the last grid tried.
+        #[source]
+        faults: QuadFaults,
+        /// Faces of the mesh where that is.
+        faces: Vec<u32>,
+    },
 }
 
-/// Finer grids tried. They double the number of quads more than twice.
-const MOST_REFINEMENTS: usize = 9;
-/// A finer grid's cells are shorter by this factor.
-const FINER: f64 = 1.1;
-
-/// Makes an integer map and extracts its quads; where they are no manifold, on a finer grid.
+/// Rounds a seamless map, as [`quantize`](seamstress_quantize::quantize) does, and extracts its quads, a manifold.
 ///
 /// Where a component, or the space between cones, is only a cell or two wide, a cell of the grid may have
-/// itself as a neighbour, or another one twice. No mesh of the usual kind can say so. `make` makes the map
-/// for the grid it is given.
+/// itself as a neighbour, or another one twice. An indexed quad mesh cannot represent that. The quads of a component
+/// are therefore looked at before a grid is taken.
 ///
 /// # Errors
-/// What `make` and [`extract()`] return, and the faults of the quads of the finest grid tried.
-pub fn manifold_quads<E>(
+/// [`ManifoldError`].
+pub fn manifold_quads(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
-    size: GridSize,
-    mut make: impl FnMut(GridSize) -> Result<IntegerSolution, E>,
-) -> Result<ManifoldQuads, ManifoldError<E>> {
-    let (mut size, mut refinements) = (size, 0);
-    loop {
-        let integer = make(size).map_err(ManifoldError::Integer)?;
-        let options = ExtractOptions::default();
-        let extraction = extract(mesh, positions, integer.map.corner_uvs(), &options)?;
-        match extraction.mesh.connectivity() {
-            Ok(connectivity) => {
-                return Ok(ManifoldQuads { integer, extraction, connectivity, refinements });
-            }
-            Err(faults) if refinements == MOST_REFINEMENTS => return Err(faults.into()),
-            Err(_) => {
-                refinements += 1;
-                // Cones may have asked for more quads already.
-                size = match finer(size, FINER) {
-                    GridSize::Quads(n) => GridSize::Quads(n.max(FINER * integer.quads())),
-                    size => size,
-                };
-            }
-        }
-    }
+    map: &SeamlessMap,
+    aligned: &EdgeSet,
+    options: &QuantizeOptions,
+    observer: &mut Observer<'_>,
+) -> Result<ManifoldQuads, ManifoldError> {
+    let settings = ExtractOptions::default();
+    let mut refused = None;
+    let mut is_manifold = |piece: &Component, uvs: &[[f64; 2]]| {
+        let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        // A small piece may have no whole cell; whether the mesh has any is found in the end.
+        let Ok(extraction) = extract(&piece.mesh, &positions, uvs, &settings) else { return true };
+        let faults = extraction.mesh.connectivity().err();
+        refused = faults.map(|faults| {
+            let faces = faulty_faces(&extraction, &faults);
+            let faces = faces.into_iter().map(|f| piece.faces[f as usize].0).collect();
+            ManifoldError::NoManifold { faults, faces }
+        });
+        refused.is_none()
+    };
+    let made =
+        quantize_accepting(mesh, positions, map, aligned, options, &mut is_manifold, observer);
+    let quantization = made.map_err(|cause| match (cause, refused) {
+        (
+            QuantizeError::Component { cause: QuantizationFailure::Refused, .. },
+            Some(no_manifold),
+        ) => no_manifold,
+        (cause, _) => cause.into(),
+    })?;
+    let extraction = extract(mesh, positions, quantization.map.corner_uvs(), &settings)?;
+    let connectivity = extraction.mesh.connectivity().map_err(|faults| {
+        let faces = faulty_faces(&extraction, &faults);
+        ManifoldError::NoManifold { faults, faces }
+    })?;
+    Ok(ManifoldQuads { quantization, extraction, connectivity })
 }
 
-/// A grid whose cells are shorter by a factor.
-fn finer(size: GridSize, factor: f64) -> GridSize {
-    match size {
-        GridSize::Quads(count) => GridSize::Quads(count * factor * factor),
-        GridSize::EdgeLength(length) => GridSize::EdgeLength(length / factor),
-        GridSize::Scale(scale) => GridSize::Scale(scale * factor),
-    }
+/// Faces of the mesh where faults of its quads are.
+fn faulty_faces(extraction: &Extraction, faults: &QuadFaults) -> Vec<u32> {
+    let vertex = |fault: &QuadFault| match *fault {
+        QuadFault::RepeatedVertex { vertex, .. } | QuadFault::NonManifoldVertex { vertex, .. } => {
+            vertex
+        }
+        QuadFault::RepeatedHalfedge { from, .. } => from,
+    };
+    let face = |fault| extraction.sources[vertex(fault) as usize].face;
+    let mut faces: Vec<u32> = faults.0.iter().map(face).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use seamstress_parametrize::{SeamlessMap, Tolerance};
-    use seamstress_quantize::{IntegerOptions, to_integer_map};
+    use seamstress_parametrize::Tolerance;
+    use seamstress_quantize::{GridSize, RoundingMethod};
     use seamstress_testkit::{squares, torus};
     use std::ops::ControlFlow;
 
     #[test]
-    fn a_torus_of_one_cell_needs_a_finer_grid() {
+    fn a_torus_has_five_quads_at_a_minimum() {
         let map = squares(&torus(6, 6, 2.0, 0.7), 1);
         let mesh = TriMesh::from_faces(map.soup.positions.len(), &map.soup.faces).unwrap();
         let seamless = SeamlessMap::certify(&mesh, map.corner_uvs, &Tolerance::default()).unwrap();
-        let mut asked = Vec::new();
-        let made = manifold_quads(&mesh, &map.soup.positions, GridSize::Quads(1.0), |size| {
-            asked.push(size);
+        let mut go_on = |_| ControlFlow::Continue(());
+        for asked in [1.0, 4.0] {
             let options =
-                IntegerOptions { size: GridSize::Quads(1.0), ..IntegerOptions::default() };
-            let mut go_on = |_| ControlFlow::Continue(());
-            to_integer_map(&mesh, &map.soup.positions, &seamless, &options, &mut go_on)
-        });
-        // Whoever makes it keeps to one cell; three by three is the least torus without a repeated edge.
-        let error = made.unwrap_err();
-        assert!(matches!(error, ManifoldError::NoManifold(_)), "{error}");
-        assert_eq!(asked.len(), 1 + MOST_REFINEMENTS);
-
-        let made = manifold_quads(&mesh, &map.soup.positions, GridSize::Quads(4.0), |size| {
-            let options = IntegerOptions { size, ..IntegerOptions::default() };
-            let mut go_on = |_| ControlFlow::Continue(());
-            to_integer_map(&mesh, &map.soup.positions, &seamless, &options, &mut go_on)
-        });
-        let made = made.unwrap();
-        assert!(made.refinements > 0 && made.connectivity.n_quads() >= 9);
-        assert_eq!(made.connectivity.euler_characteristic(), 0);
+                QuantizeOptions { size: GridSize::Quads(asked), ..QuantizeOptions::default() };
+            let made = manifold_quads(
+                &mesh,
+                &map.soup.positions,
+                &seamless,
+                &EdgeSet::new(&mesh, []),
+                &options,
+                &mut go_on,
+            )
+            .unwrap();
+            // With fewer, an edge would be repeated; five points can all be joined on a torus.
+            assert!(made.connectivity.n_quads() >= 5, "asked for {asked}");
+            assert_eq!(made.connectivity.euler_characteristic(), 0);
+        }
     }
 
     #[test]
-    fn every_size_gets_finer() {
-        assert_eq!(finer(GridSize::Quads(100.0), 2.0), GridSize::Quads(400.0));
-        assert_eq!(finer(GridSize::EdgeLength(1.0), 2.0), GridSize::EdgeLength(0.5));
-        assert_eq!(finer(GridSize::Scale(3.0), 2.0), GridSize::Scale(6.0));
+    fn the_error_says_what_is_wrong_with_the_quads() {
+        let map = squares(&torus(6, 6, 2.0, 0.7), 1);
+        let mesh = TriMesh::from_faces(map.soup.positions.len(), &map.soup.faces).unwrap();
+        let seamless = SeamlessMap::certify(&mesh, map.corner_uvs, &Tolerance::default()).unwrap();
+        let mut go_on = |_| ControlFlow::Continue(());
+        // Of one coarse grid alone, without any heed to its edges.
+        let options = QuantizeOptions {
+            size: GridSize::Quads(4.0),
+            rounding: RoundingMethod::Greedy,
+            ..QuantizeOptions::default()
+        };
+        let nothing = EdgeSet::new(&mesh, []);
+        let positions = &map.soup.positions;
+        let made = manifold_quads(&mesh, positions, &seamless, &nothing, &options, &mut go_on);
+        match made.unwrap_err() {
+            ManifoldError::NoManifold { faults, faces } => {
+                assert!(!faults.0.is_empty() && !faces.is_empty());
+            }
+            other => panic!("{other}"),
+        }
     }
 }

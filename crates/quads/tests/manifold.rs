@@ -1,15 +1,16 @@
 //! Coarse grids, whose quads could easily be neighbours twice.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
+use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::{MapOptions, Purpose, make_map};
 use seamstress_quads::manifold_quads;
-use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
+use seamstress_quantize::{GridSize, QuantizeOptions};
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
 
-/// Finer grids that the quads of a mesh took to be a manifold of its topology.
+/// By how much a grid had to be finer for the quads of a mesh to be a manifold of its topology.
 fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     let size = GridSize::Quads(quads);
@@ -17,13 +18,12 @@ fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
     let options = MapOptions { purpose: Purpose::Quads { edge_length }, ..MapOptions::default() };
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap().map;
-    let made = manifold_quads(&mesh, &soup.positions, size, |size| {
-        let options = IntegerOptions { size, ..IntegerOptions::default() };
-        to_integer_map(&mesh, &soup.positions, &map, &options, &mut go_on)
-    })
-    .unwrap();
+    let (nothing, options) =
+        (EdgeSet::new(&mesh, []), QuantizeOptions { size, ..QuantizeOptions::default() });
+    let made = manifold_quads(&mesh, &soup.positions, &map, &nothing, &options, &mut go_on);
+    let made = made.unwrap();
     assert_eq!(made.connectivity.euler_characteristic(), mesh.euler_characteristic());
-    made.refinements
+    made.quantization.refinements()
 }
 
 #[test]

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 ///
 /// Summed with twice the digits of a double (Ogita, Rump and Oishi 2005), from coordinates that are taken as exact:
 /// whatever adds up to a whole number of cells is that number.
-pub(super) fn area(triangles: impl Iterator<Item = [Complex64; 3]>) -> f64 {
+pub(crate) fn area(triangles: impl Iterator<Item = [Complex64; 3]>) -> f64 {
     let mut sum = Sum::default();
     for [a, b, c] in triangles {
         for (from, to) in [(a, b), (b, c), (c, a)] {

@@ -1,7 +1,7 @@
-//! The certificate of an integer map.
+//! The certificate of an integer-grid map.
 
-use super::area::area;
-use super::isolines::turning_points;
+use crate::area::area;
+use crate::isolines::turning_points;
 use num_complex::Complex64;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
@@ -45,7 +45,7 @@ pub struct IntegerCertificate {
     /// Interior edges, all with an integer translation.
     pub edges: usize,
     /// Those of them across which a quarter turn and the integer translation are exact in doubles: all of an
-    /// [`IntegerMap`].
+    /// [`IntegerGridMap`].
     pub exact_edges: usize,
     /// Cones, all of them at grid points in every face around them.
     pub integral_cones: usize,
@@ -53,7 +53,7 @@ pub struct IntegerCertificate {
     pub isoline_edges: usize,
     /// Vertices without a cone at which aligned edges turn, all of them at grid points.
     pub integral_corners: usize,
-    /// Largest distance from an integer of what is integral, grid units: 0 of an [`IntegerMap`].
+    /// Largest distance from an integer of what is integral, grid units: 0 of an [`IntegerGridMap`].
     pub integral_error: f64,
     /// The largest coordinate of a translation.
     pub largest_translation: f64,
@@ -132,17 +132,17 @@ impl IntegerCertificate {
 ///
 /// Translations between the two sides of every edge and the positions of cones are integers, and the quarter
 /// turns are exact, all of it in the doubles themselves. It can only be had by passing
-/// [`IntegerMap::certify`].
+/// [`IntegerGridMap::certify`].
 ///
 /// Two cones are never closer than one grid unit along the surface: a straight line between them is laid
 /// out without a flip as a segment between grid points that is not a point.
 #[derive(Debug, Clone)]
-pub struct IntegerMap {
+pub struct IntegerGridMap {
     map: SeamlessMap,
     certificate: IntegerCertificate,
 }
 
-impl IntegerMap {
+impl IntegerGridMap {
     /// Checks a map given by one UV per corner, in grid units.
     ///
     /// # Errors
@@ -158,12 +158,12 @@ impl IntegerMap {
 
     /// Checks a map, in grid units, whose isolines at integers hold edges given by their end vertices.
     ///
-    /// Beyond everything [`IntegerMap::certify`] checks, on either side of each such edge both ends have the
+    /// Beyond everything [`IntegerGridMap::certify`] checks, on either side of each such edge both ends have the
     /// same integer as one coordinate, and where these edges turn they are at a grid point. The grid's quads
     /// then have these edges along theirs.
     ///
     /// # Errors
-    /// As [`IntegerMap::certify`], and those of [`Alignment::certify`].
+    /// As [`IntegerGridMap::certify`], and those of [`Alignment::certify`].
     pub fn certify_aligned(
         mesh: &TriMesh,
         corner_uvs: Vec<[f64; 2]>,

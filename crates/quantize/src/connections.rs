@@ -1,51 +1,30 @@
 //! Short straight lines between grid points.
 
-use super::gauss::Overflow;
-use super::scene::{Connection, Scene, Sight, distinct};
+use crate::gauss::Overflow;
+use crate::scene::{Connection, Scene, Sight};
 use num_complex::Complex64;
 use seamstress_mesh::{Halfedge, HalfedgeData};
 use seamstress_parametrize::quarter::turn;
-use std::collections::HashSet;
 
 /// Triangles that the search may cross in all.
 const MOST_CROSSINGS: usize = 20_000_000;
 
-/// A line from a grid point back to itself: two grid units would be two edges between the same two points.
-const LEAST_LOOP: i64 = 3;
-
-/// All straight lines between grid points that are shorter than a radius and pass through no other one, one
-/// for lines that differ by a unit only, shortest first.
+/// All straight lines between grid points that are shorter than a radius and pass through no other one.
 ///
 /// From every corner at a grid point, a beam of directions is followed from triangle to triangle, split
 /// where a vertex stands in it, until it leaves the radius. The displacement is exact: what the seams that
 /// were crossed and the wedges at both ends add.
-///
-/// No two edges of the grid may join the same two points, or the quads would be no manifold: of all lines
-/// between two points only the shortest may have length one, and a loop has at least three edges.
 ///
 /// # Errors
 /// [`Overflow`].
 pub fn connections(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection>, Overflow> {
     let mesh = scene.mesh;
     let z = mesh.halfedges().map(|h| scene.at(h)).collect();
-    let mut search = Search { scene, z, radius, found: Vec::new(), crossings: 0 };
+    let mut beams = Beams { scene, z, radius, found: Vec::new(), crossings: 0 };
     for h in mesh.halfedges().filter(|&h| scene.needs.is_point[mesh.origin(h)]) {
-        search.look_from(h);
+        beams.look_from(h);
     }
-    let Search { mut found, .. } = search;
-    found.sort_by(|a, b| a.length.total_cmp(&b.length));
-    let mut joined = HashSet::new();
-    let line = |sight: &Sight| {
-        let ends = [sight.from, sight.to].map(|h| mesh.origin(h));
-        let least = match ends[0] == ends[1] {
-            true => LEAST_LOOP,
-            false if joined.insert(ends) => 1,
-            false => 2,
-        };
-        Ok(Connection { least, ..scene.line(sight)? })
-    };
-    let lines: Result<Vec<Connection>, Overflow> = found.iter().map(line).collect();
-    Ok(distinct(lines?))
+    beams.found.iter().map(|sight| scene.line(sight)).collect()
 }
 
 /// Directions still in view when an edge is about to be crossed.
@@ -64,7 +43,7 @@ struct Beam {
     depth: usize,
 }
 
-struct Search<'a> {
+struct Beams<'a> {
     scene: &'a Scene<'a>,
     /// Position of each corner.
     z: HalfedgeData<Complex64>,
@@ -73,7 +52,7 @@ struct Search<'a> {
     crossings: usize,
 }
 
-impl Search<'_> {
+impl Beams<'_> {
     fn look_from(&mut self, h: Halfedge) {
         let origin = self.z[h];
         let (right, left) = (self.z[h.next()] - origin, self.z[h.prev()] - origin);

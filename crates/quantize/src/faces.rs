@@ -1,14 +1,14 @@
 //! Faces of three grid points: nothing between these can give way.
 
-use super::gauss::Overflow;
-use super::scene::{Connection, Scene, Sight};
+use crate::gauss::Overflow;
+use crate::scene::{Connection, Scene, Sight};
 use seamstress_mesh::Halfedge;
 
 /// A triangle of the mesh whose corners are grid points. It may not collapse or turn over.
 #[derive(Debug, Clone)]
 pub struct PointFace {
-    /// The ways from its first corner to the second and to the third.
-    pub ways: [Connection; 2],
+    /// The sides from its first corner to the second and to the third.
+    pub sides: [Connection; 2],
     /// Its shortest side, in the units of the layout.
     pub extent: f64,
 }
@@ -20,10 +20,12 @@ pub struct PointFace {
 pub fn point_faces(scene: &Scene<'_>) -> Result<Vec<PointFace>, Overflow> {
     let length = |a: Halfedge, b: Halfedge| (scene.at(b) - scene.at(a)).norm();
     let face = |[a, b, c]: [Halfedge; 3]| {
-        let way =
-            |to| scene.line(&Sight { from: a, to, length: length(a, to), crossed: Vec::new() });
+        let side = |to| {
+            let length = length(a, to);
+            scene.line(&Sight { from: a, to, length, crossed: Vec::new() })
+        };
         let extent = length(a, b).min(length(b, c)).min(length(c, a));
-        Ok(PointFace { ways: [way(b)?, way(c)?], extent })
+        Ok(PointFace { sides: [side(b)?, side(c)?], extent })
     };
     let is_point = |&h: &Halfedge| scene.needs.is_point[scene.mesh.origin(h)];
     let sides = scene.mesh.faces().map(|f| f.halfedges());

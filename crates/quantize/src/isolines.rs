@@ -1,7 +1,7 @@
 //! Isolines: along straight runs of aligned edges one coordinate is the same, and has to be integral.
 
-use super::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
-use super::space::Base;
+use crate::base::Base;
+use crate::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
 use num_complex::Complex64;
 use seamstress_mesh::features::{EdgeSet, sectors};
 use seamstress_mesh::{Halfedge, TriMesh, VertexData};

@@ -1,109 +1,62 @@
-//! Integer maps: seamless maps whose unit grid closes up over the surface.
+//! Integer-grid maps: seamless maps whose unit grid closes up over the surface (quantization).
 //!
-//! [`to_integer_map`] rounds a certified seamless map, with these steps per component:
+//! [`quantize`] rounds a certified seamless map. Per component it
 //!
-//! 1. [`space`]: what must be integral, the translations of chains, the cones, and of aligned edges their
-//!    corners and [`isolines`], as exact functions of free integer coordinates ([`lattice`]);
-//! 2. [`reduced`]: the energy as a quadratic function of those coordinates alone;
-//! 3. [`connections`], [`rays`], [`rounding`], [`search`]: the nearest integer point in that energy at
-//!    which no straight line between cones or isolines collapses;
-//! 4. [`barrier`]: the layout moves there without a flip; where it cannot, [`walls`] say what other integers
-//!    have to satisfy, and the rounding is done again;
-//! 5. [`snap`]: doubles that fit to the last bit;
-//! 6. [`IntegerMap::certify`], the only door to an integer map.
+//! 1. reads the map as a layout in the exact space of integer-grid maps (`space`): the translations of chains, the
+//!    cones, and of aligned edges their corners and isolines, as exact functions of free integer coordinates
+//!    (`lattice`);
+//! 2. reduces the energy to a quadratic function of those coordinates alone (`energy`);
+//! 3. finds the lines between cones or isolines that may not collapse (`connections`, `rays`, `obstacles`);
+//! 4. searches (`search`): rounds to the nearest integers in that energy that keep them (`rounding`), moves the layout
+//!    there without a flip (`path`), and where it cannot go, learns from the collapsing triangles what other integers
+//!    have to satisfy (`farkas`);
+//! 5. writes doubles that fit to the last bit (`snap`).
+//!
+//! [`IntegerGridMap::certify`] is the only door to an integer-grid map.
+
+#![allow(unreachable_pub, reason = "modules are private; tests see some through `internals`")]
+#![cfg_attr(not(feature = "internals"), allow(dead_code))]
 
 mod area;
-pub mod barrier;
+mod base;
 mod certificate;
-mod component;
-pub mod conditional;
-pub mod connections;
-pub mod faces;
-mod fixing;
-pub mod gauss;
-mod grids;
-pub mod isolines;
-pub mod lattice;
-pub mod moves;
-mod outcome;
-pub mod rays;
-pub mod reduced;
-pub mod rounding;
-pub mod scene;
-pub mod search;
-pub mod snap;
-mod solve;
-pub mod space;
+mod connections;
+mod energy;
+mod error;
+mod faces;
+mod farkas;
+mod gauss;
+mod isolines;
+mod lattice;
+mod layout;
+mod linear;
+mod obstacles;
+mod options;
+mod path;
+mod quantize;
+mod rays;
+mod rounding;
+mod scene;
+mod search;
+mod snap;
+mod space;
+mod stats;
 mod walk;
-pub mod walls;
 
-use seamstress_parametrize::map::Tolerance;
+pub use certificate::{IntegerCertificate, IntegerGridMap, IntegralTolerance};
+pub use error::{QuantizationFailure, QuantizeError};
+pub use gauss::Overflow;
+pub use options::{GridSize, QuantizeOptions, RoundingMethod};
+pub use quantize::{Quantization, quantize, quantize_accepting};
+pub use search::Acceptance;
+pub use stats::QuantizationStats;
 
-pub use certificate::{IntegerCertificate, IntegerMap, IntegralTolerance};
-pub use outcome::{IntegerFailure, IntegerStats};
-pub use solve::{IntegerError, IntegerSolution, to_aligned_integer_map, to_integer_map};
-
-/// How fine the grid is to be.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum GridSize {
-    /// About so many quads in all.
-    Quads(f64),
-    /// Mesh units per grid unit: the mean edge length of the quads.
-    EdgeLength(f64),
-    /// Grid units per mesh unit.
-    Scale(f64),
-}
-
-impl GridSize {
-    /// The number.
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Quads(x) | Self::EdgeLength(x) | Self::Scale(x) => x,
-        }
-    }
-
-    /// Edge length of a cell on a surface with the area of a square of this side, both in mesh units.
-    pub fn cell(self, side: f64) -> f64 {
-        match self {
-            Self::Quads(quads) => side / quads.sqrt(),
-            Self::EdgeLength(length) => length,
-            Self::Scale(scale) => 1.0 / scale,
-        }
-    }
-}
-
-/// How the integers are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum IntegerRounding {
-    /// The closest vector in the symmetric Dirichlet energy that keeps all connections of cones, and a
-    /// way there without flips. A finer grid where there is none.
-    #[default]
-    Constrained,
-    /// One coordinate after the other in the energy that preserves Jacobians (Levi 2021, supplement,
-    /// section 8; Bommes et al. 2009). Often flips triangles; such a map is refused. For comparison.
-    Greedy,
-}
-
-/// Settings of [`to_integer_map`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IntegerOptions {
-    /// How fine the grid is to be.
-    pub size: GridSize,
-    /// How the integers are chosen.
-    pub rounding: IntegerRounding,
-    /// Tolerance of the certificate of the seamless map in it, and of the map it is made from; what is
-    /// integral is so exactly.
-    pub tolerance: Tolerance,
-}
-
-impl Default for IntegerOptions {
-    fn default() -> Self {
-        Self {
-            size: GridSize::Quads(5000.0),
-            rounding: IntegerRounding::default(),
-            tolerance: Tolerance::default(),
-        }
-    }
+/// What tests of this workspace look at; no promise is made of it.
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::gauss::{Form, Gauss, add_scaled};
+    pub use crate::isolines::turning_points;
+    pub use crate::lattice::Lattice;
+    pub use crate::space::{GridNeeds, IntegerSpace};
 }

@@ -1,8 +1,9 @@
-//! Short ways to isolines, which may not vanish either.
+//! Short lines to isolines, which may not vanish either.
 
-use super::gauss::{Form, Gauss, Overflow, add_scaled};
-use super::isolines::part;
-use super::scene::{Carry, Connection, Scene, Sight, distinct};
+use crate::gauss::{Form, Gauss, Overflow, add_scaled};
+use crate::isolines::part;
+use crate::linear::Row;
+use crate::scene::{Carry, Connection, Scene, Sight};
 use num_complex::Complex64;
 use seamstress_mesh::{Halfedge, HalfedgeData};
 use seamstress_parametrize::quarter::turn;
@@ -12,17 +13,17 @@ const ALONG: f64 = 1e-7;
 /// Triangles that a ray may cross.
 const MOST_CROSSINGS: usize = 10_000;
 
-/// What must keep its length and sense along isolines, one for each distinct form, shortest first:
-/// * from every vertex on an isoline, and from every grid point, the ways straight to the next isolines;
+/// What must keep its length and sense along isolines:
+/// * from every vertex on an isoline, and from every grid point, the lines straight to the next isolines;
 /// * the pieces of isolines between grid points;
 /// * the heights of triangles between an aligned edge and a vertex at another level.
 ///
-/// The overlap of two parallel isolines ends at an end of one of them, so that ways from vertices are
-/// enough.
+/// The overlap of two parallel isolines ends at an end of one of them, so that lines from vertices
+/// are enough.
 ///
 /// # Errors
 /// [`Overflow`].
-pub fn ways_to_isolines(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection>, Overflow> {
+pub fn lines_to_isolines(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection>, Overflow> {
     if scene.needs.levels.is_empty() {
         return Ok(Vec::new());
     }
@@ -30,29 +31,29 @@ pub fn ways_to_isolines(scene: &Scene<'_>, radius: f64) -> Result<Vec<Connection
     for &(h, coordinate) in &scene.needs.levels {
         level[h] = Some(coordinate);
     }
-    let search = Search { scene, level, radius };
+    let rays = Rays { scene, level, radius };
     let mut found = Vec::new();
     for h in scene.mesh.halfedges() {
         for quarters in 0..4 {
-            found.extend(search.ray(h, quarters)?);
+            found.extend(rays.ray(h, quarters)?);
         }
     }
     for &(h, coordinate) in &scene.needs.levels {
-        found.extend(search.piece(h)?);
-        found.extend(search.height(h, coordinate)?);
+        found.extend(rays.piece(h)?);
+        found.extend(rays.height(h, coordinate)?);
     }
-    Ok(distinct(found))
+    Ok(found)
 }
 
-struct Search<'a> {
+struct Rays<'a> {
     scene: &'a Scene<'a>,
     /// For aligned half-edges the coordinate their ends share.
     level: HalfedgeData<Option<u32>>,
     radius: f64,
 }
 
-impl Search<'_> {
-    /// The way from a corner in the direction `i^quarters` to the first isoline across it.
+impl Rays<'_> {
+    /// The line from a corner in the direction `i^quarters` to the first isoline across it.
     fn ray(&self, h: Halfedge, quarters: i32) -> Result<Option<Connection>, Overflow> {
         let scene = self.scene;
         // Along u a corner has to have an integral u.
@@ -76,7 +77,8 @@ impl Search<'_> {
                     return Ok(None);
                 }
                 let rows = self.rise(&own, &crossed, edge, coordinate, quarters)?;
-                return Ok(Some(Connection { length: distance, rows, least: 1 }));
+                let ends = [h, edge].map(|h| scene.mesh.origin(h));
+                return Ok(Some(Connection { ends, length: distance, rows, minimum: 1 }));
             }
             let Some(t) = scene.mesh.twin(edge) else { return Ok(None) };
             crossed.push(edge);
@@ -111,7 +113,7 @@ impl Search<'_> {
         edge: Halfedge,
         coordinate: u32,
         quarters: i32,
-    ) -> Result<[Vec<(usize, i64)>; 2], Overflow> {
+    ) -> Result<[Row; 2], Overflow> {
         let scene = self.scene;
         let Carry { turns, form: carried } = scene.path(crossed)?;
         let real = |sign: i64| Gauss { re: sign, im: 0 };
@@ -171,6 +173,7 @@ impl Search<'_> {
         let way = scene.at(apex) - scene.at(foot);
         let length = if coordinate == 0 { way.re } else { way.im }.abs();
         let rows = [scene.space.row(&rise)?, Vec::new()];
-        Ok((length < self.radius).then_some(Connection { length, rows, least: 1 }))
+        let ends = [apex, foot].map(|h| scene.mesh.origin(h));
+        Ok((length < self.radius).then_some(Connection { ends, length, rows, minimum: 1 }))
     }
 }

@@ -1,11 +1,15 @@
 //! A layout with its exact description, and lines on it.
 
-use super::conditional::Row;
-use super::gauss::{Form, Gauss, Overflow, add_scaled};
-use super::space::{GridNeeds, IntegerSpace};
+use crate::gauss::{Form, Gauss, Overflow, add_scaled};
+use crate::linear::{Row, negated};
+use crate::space::{GridNeeds, IntegerSpace};
 use num_complex::Complex64;
-use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh};
+use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex};
 use seamstress_parametrize::cut::Cut;
+
+/// Edges of a loop from a grid point back to itself at a minimum: with one or two, two edges of quads would join the
+/// same two points.
+const MINIMUM_LOOP: i64 = 3;
 
 /// A layout of a cut mesh and the space it lies in.
 #[derive(Clone, Copy)]
@@ -33,17 +37,32 @@ pub struct Carry {
     pub form: Form,
 }
 
-/// A straight line on the flat surface from one grid point to another, or back to the same; or the way from
-/// an isoline, or a grid point, straight to another isoline.
+/// A straight line on the flat surface from one grid point to another, or back to the same (a saddle connection);
+/// or from a vertex on an isoline, or a grid point, straight across to another isoline.
 #[derive(Debug, Clone)]
 pub struct Connection {
+    /// The vertices at its ends; of an isoline, one on it.
+    pub ends: [Vertex; 2],
     /// Its length, in the units of the layout.
     pub length: f64,
-    /// Real and imaginary part of the way from its first to its second end, as exact forms in the
-    /// coordinates. The second is empty for ways to an isoline.
+    /// Real and imaginary part of the displacement from its first to its second end, as exact forms in the
+    /// coordinates. The second is empty for lines to an isoline.
     pub rows: [Row; 2],
-    /// Grid units that a walk along the grid from one end to the other must have at least.
-    pub least: i64,
+    /// Grid units that a walk along the grid from one end to the other must have at a minimum.
+    pub minimum: i64,
+}
+
+/// A grid point seen from a corner: the corner, the corner where it was found, and the edges crossed.
+#[derive(Debug, Clone)]
+pub struct Sight {
+    /// Corner at the first end.
+    pub from: Halfedge,
+    /// Corner at the second end.
+    pub to: Halfedge,
+    /// Distance.
+    pub length: f64,
+    /// Half-edges crossed on the way, each in the face that is left.
+    pub crossed: Vec<Halfedge>,
 }
 
 impl Scene<'_> {
@@ -87,45 +106,30 @@ impl Scene<'_> {
         let [to, from] = [sight.to, sight.from].map(|h| self.space.form(self.cut.wedge[h]));
         add_scaled(&mut form, to, Gauss::unit(turns))?;
         add_scaled(&mut form, from, Gauss::ONE.negated())?;
-        Ok(Connection { length: sight.length, rows: self.space.rows(&form)?, least: 1 })
+        let rows = self.space.rows(&form)?;
+        let ends = [sight.from, sight.to].map(|h| self.mesh.origin(h));
+        let minimum = if ends[0] == ends[1] { MINIMUM_LOOP } else { 1 };
+        Ok(Connection { ends, length: sight.length, rows, minimum })
     }
 }
 
-/// A grid point seen from a corner: the corner, the corner where it was found, and the edges crossed.
-#[derive(Debug, Clone)]
-pub struct Sight {
-    /// Corner at the first end.
-    pub from: Halfedge,
-    /// Corner at the second end.
-    pub to: Halfedge,
-    /// Distance.
-    pub length: f64,
-    /// Half-edges crossed on the way, each in the face that is left.
-    pub crossed: Vec<Halfedge>,
-}
-
-/// One for lines that differ by a unit only, with what the strictest of them asks for, shortest first; those
-/// that vanish identically are left out.
-pub fn distinct(mut connections: Vec<Connection>) -> Vec<Connection> {
-    connections.retain(|c| c.rows.iter().any(|row| !row.is_empty()));
-    for connection in &mut connections {
-        connection.rows = canonical(std::mem::take(&mut connection.rows));
-    }
-    connections.sort_by(|a, b| a.rows.cmp(&b.rows).then(a.length.total_cmp(&b.length)));
-    connections.dedup_by(|b, a| {
-        let is_same = a.rows == b.rows;
-        if is_same {
-            a.least = a.least.max(b.least);
-        }
+/// One for lines that differ by a unit only, with what the strictest of them asks for, shortest first; those that
+/// vanish identically are left out.
+pub fn distinct(mut lines: Vec<Connection>) -> Vec<Connection> {
+    lines.retain(|line| line.rows.iter().any(|row| !row.is_empty()));
+    lines.iter_mut().for_each(|line| line.rows = canonical(std::mem::take(&mut line.rows)));
+    lines.sort_by(|a, b| a.rows.cmp(&b.rows).then(a.length.total_cmp(&b.length)));
+    lines.dedup_by(|other, line| {
+        let is_same = other.rows == line.rows;
+        line.minimum = line.minimum.max(if is_same { other.minimum } else { 0 });
         is_same
     });
-    connections.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.rows.cmp(&b.rows)));
-    connections
+    lines.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.rows.cmp(&b.rows)));
+    lines
 }
 
 /// The multiple by a unit that comes last in the order of rows.
 fn canonical([re, im]: [Row; 2]) -> [Row; 2] {
-    let negated = |row: &Row| -> Row { row.iter().map(|&(k, c)| (k, -c)).collect() };
     let [back, down] = [negated(&re), negated(&im)];
     let turned = [[down.clone(), re.clone()], [back.clone(), down], [im.clone(), back]];
     turned.into_iter().fold([re, im], |a, b| a.max(b))

@@ -1,315 +1,328 @@
-//! Local search around an integer point.
+//! The search for the integers of one component: grid by grid, rounding by rounding, nothing learned twice.
 
-use super::conditional::{Row, apply};
-use super::reduced::Dense;
-use super::rounding::RoundingProblem;
+use crate::certificate::IntegerGridMap;
+use crate::error::QuantizationFailure;
+use crate::farkas::farkas_cuts;
+use crate::layout::SeamlessLayout;
+use crate::obstacles::Obstacles;
+use crate::options::{QuantizeOptions, RoundingMethod};
+use crate::path::{Advance, advance};
+use crate::rounding::{
+    HOPELESS, ReducedEnergy, Rounding, RoundingProblem, improve, round, round_greedily,
+};
+use crate::stats::QuantizationStats;
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Component, Metric};
+use seamstress_parametrize::energy::SymmetricDirichlet;
+use seamstress_parametrize::layout::newton::{NewtonOptions, minimize};
+use seamstress_parametrize::map::SeamlessMap;
 use seamstress_parametrize::progress::{Cancelled, Watch};
+use web_time::Instant;
 
-/// Most moves in all.
-const MOST_MOVES: usize = 300;
-/// Moves tried in the order of their energies while constraints are violated.
-const TRIED: usize = 300;
-/// Steps of a repair. Those that succeed take less than a third of it.
-const MOST_REPAIRS: usize = 1000;
-/// What energy counts in a repair against a violated constraint of weight one; a step along a usual
-/// coordinate costs about one.
-const ENERGY_WEIGHT: f64 = 0.05;
+/// What a caller asks of a component's map beyond its certificate, given one UV per corner. On a refusal the search
+/// goes on with another grid.
+pub type Acceptance<'a> = dyn FnMut(&Component, &[[f64; 2]]) -> bool + 'a;
 
-/// A vector of the basis and how often it is added, 1 or -1.
-type Move = (usize, i64);
+/// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
+/// within a few percent, but other integers are near.
+const NEARBY: [f64; 7] = [1.0, 0.98, 1.02, 0.99, 1.01, 0.97, 1.03];
+/// How many of them where there is a map of another size.
+const FEW_NEARBY: usize = 3;
+/// What the area of a cell falls by when the grid is made finer.
+const REFINEMENT: f64 = 1.1;
+/// Finer grids tried, as powers of that: small steps first, since the number of quads asked for is missed by them.
+const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
+/// Roundings on one grid, each but the first with the cuts that the one before has taught.
+const MOST_ROUNDINGS: usize = 14;
+/// Cells of a closed component at a minimum, however coarse the grid asked for: a torus can have five, a sphere six.
+const FEWEST_CELLS: f64 = 5.0;
+/// The finish with the integers held: a few Newton steps, since the path ends near the minimum.
+const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
+/// Slack of the triangle inequality, in mean edge lengths, of the metric for meshes with triangles that have no area:
+/// most triangles become nearly regular.
+const SLACK: f64 = 0.3;
 
-/// Takes steps along single vectors of the reduced basis and pairs of them while that lowers the number of
-/// violated constraints, or the energy at the same number; where constraints stay violated, repairs them at
-/// the cost of energy first.
-///
-/// # Errors
-/// [`Cancelled`] when the observer breaks.
-pub fn improve(
-    problem: &RoundingProblem,
-    x: Vec<i64>,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Vec<i64>, Cancelled> {
-    let mut search = Search::new(problem, x);
-    search.descend(watch)?;
-    if search.violated > 0 && search.repair(watch)? {
-        search.descend(watch)?;
-    }
-    Ok(search.x)
+/// A component on a grid.
+#[derive(Debug, Clone)]
+pub(crate) struct Placement {
+    /// One per corner, grid units.
+    pub(crate) corner_uvs: Vec<[f64; 2]>,
+    /// Width of their box, a whole number; the box begins at the column asked for.
+    pub(crate) columns: i64,
+    /// Area of the map, grid units.
+    pub(crate) quads: f64,
+    /// Edge length of a cell, mesh units.
+    cell: f64,
+    /// That of the cells asked for.
+    asked: f64,
+    /// Why these would not do, if so.
+    refined_because: Option<String>,
 }
 
-struct Search<'a> {
-    problem: &'a RoundingProblem,
-    /// The energy on multiples of the basis.
-    matrix: &'a Dense,
-    x: Vec<i64>,
-    /// Gradient of the energy along the vectors of the basis.
-    gradient: Vec<f64>,
-    /// Displacement of each constraint.
-    values: Vec<[i64; 2]>,
-    violated: usize,
-    /// What violating each constraint counts in a repair, and after these each span.
-    weights: Vec<f64>,
-    /// The span that each constraint is a way of.
-    span_of: Vec<Option<usize>>,
-    /// For each vector of the basis the constraints it moves, and how.
-    moved: Vec<Vec<(usize, [i64; 2])>>,
-    /// A fall of the energy that counts.
-    gain: f64,
+/// Integers that the layout has reached.
+#[derive(Debug, Clone)]
+struct Candidate {
+    /// Size of a cell, in the layout's units.
+    h: f64,
+    /// The held unknowns.
+    held: Vec<i64>,
+    /// All unknowns there, in the layout's units.
+    y: Vec<f64>,
 }
 
-impl<'a> Search<'a> {
-    fn new(problem: &'a RoundingProblem, x: Vec<i64>) -> Self {
-        let d: Vec<f64> = x.iter().zip(&problem.mean).map(|(&x, m)| x as f64 - m).collect();
-        let slope: Vec<f64> = problem.matrix.multiply(&d).iter().map(|g| 2.0 * g).collect();
-        let energy: f64 = 0.5 * slope.iter().zip(&d).map(|(g, d)| g * d).sum::<f64>();
-        let basis = &problem.moves;
-        let gradient: Vec<f64> = basis.vectors.iter().map(|row| apply(row, &slope)).collect();
-        let values = problem.constraints.iter().map(|c| c.at(&x).map(|u| u as i64)).collect();
-        let moved = moved(problem);
-        let span_of = problem.span_of();
-        let gain = 1e-6 * energy.abs() + 1e-12;
-        let matrix = &basis.matrix;
-        let weights = vec![1.0; problem.constraints.len() + problem.spans.len()];
-        let violated = 0;
-        let mut search =
-            Self { problem, matrix, x, gradient, values, violated, weights, span_of, moved, gain };
-        let every = 0..problem.constraints.len();
-        search.violated = every.filter(|&i| !search.allows(i, search.values[i])).count()
-            + (0..problem.spans.len()).filter(|&k| !search.has_room(k, &[])).count();
-        search
-    }
+/// A component with everything the search knows about it.
+pub(crate) struct ComponentSearch<'a> {
+    piece: &'a Component,
+    options: &'a QuantizeOptions,
+    layout: SeamlessLayout<'a>,
+    energy: ReducedEnergy,
+    obstacles: Obstacles,
+    /// The coarsest grid with a map.
+    coarsest: Option<Candidate>,
+    /// With the work done so far.
+    stats: QuantizationStats,
+}
 
-    fn allows(&self, i: usize, value: [i64; 2]) -> bool {
-        self.problem.constraints[i].allows(value.map(|x| x as f64))
-    }
-
-    /// Whether a span leaves room when some constraints, in ascending order, take other values.
-    fn has_room(&self, span: usize, changed: &[(usize, [i64; 2])]) -> bool {
-        self.problem.spans[span].has_room(|i| {
-            let new = changed.binary_search_by_key(&i, |&(j, _)| j).map(|at| changed[at].1);
-            new.unwrap_or(self.values[i]).map(|x| x as f64)
-        })
-    }
-
-    /// Change of the energy by a single move.
-    fn cost(&self, (k, step): Move) -> f64 {
-        self.matrix.row(k)[k] + step as f64 * self.gradient[k]
-    }
-
-    /// The constraints that some moves change, and their new values.
-    fn changed(&self, moves: &[Move]) -> Vec<(usize, [i64; 2])> {
-        let mut steps: Vec<(usize, [i64; 2])> = Vec::new();
-        for &(k, step) in moves {
-            steps.extend(self.moved[k].iter().map(|&(i, [u, v])| (i, [step * u, step * v])));
-        }
-        steps.sort_unstable();
-        let sum = |group: &[(usize, [i64; 2])]| {
-            let start = (group[0].0, self.values[group[0].0]);
-            group.iter().fold(start, |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
-        };
-        steps.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
-    }
-
-    /// Violated constraints and spans after some moves, and the change of their weight.
-    fn after(&self, moves: &[Move]) -> (usize, f64) {
-        let changed = self.changed(moves);
-        let mut spans: Vec<usize> = changed.iter().filter_map(|(i, _)| self.span_of[*i]).collect();
-        spans.sort_unstable();
-        spans.dedup();
-        let (mut count, mut weight) = (self.violated, 0.0);
-        let mut note = |was_good: bool, is_good: bool, by: f64| match (was_good, is_good) {
-            (true, false) => (count, weight) = (count + 1, weight + by),
-            (false, true) => (count, weight) = (count - 1, weight - by),
-            _ => {}
-        };
-        for &(i, value) in &changed {
-            note(self.allows(i, self.values[i]), self.allows(i, value), self.weights[i]);
-        }
-        for k in spans {
-            let weight = self.weights[self.values.len() + k];
-            note(self.has_room(k, &[]), self.has_room(k, &changed), weight);
-        }
-        (count, weight)
-    }
-
-    /// Violated constraints and spans after some moves.
-    fn violated_after(&self, moves: &[Move]) -> usize {
-        self.after(moves).0
-    }
-
-    /// Steps as long as they pay.
-    fn descend(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
-        for _ in 0..MOST_MOVES {
-            watch.pulse()?;
-            let Some(moves) = self.best_single().or_else(|| self.best_pair()) else { break };
-            self.apply(&moves);
-        }
-        Ok(())
-    }
-
-    /// Looks at one violated constraint after the other and takes the step among those that move it that
-    /// lowers the weight of all violated ones most; if none does, it gets more weight. True if all
-    /// constraints hold in the end; otherwise the fewest violated ones found are left.
+impl<'a> ComponentSearch<'a> {
+    /// Reads the part of a seamless map that lies on a component, and reduces the energy around it to the integers.
     ///
-    /// # Source
-    /// Morris 1993, *The breakout method for escaping from local minima*.
-    fn repair(&mut self, watch: &mut Watch<'_, '_>) -> Result<bool, Cancelled> {
-        let (n, all) = (self.problem.constraints.len(), self.problem.spans.len());
-        let touching = self.touching();
-        let mut best = (self.violated, self.x.clone());
-        let mut at = 0;
-        for _ in 0..MOST_REPAIRS {
-            watch.pulse()?;
-            if self.violated == 0 {
-                return Ok(true);
+    /// # Errors
+    /// [`QuantizationFailure`].
+    pub(crate) fn new(
+        piece: &'a Component,
+        metric: &Metric,
+        map: &SeamlessMap,
+        aligned: &EdgeSet,
+        options: &'a QuantizeOptions,
+    ) -> Result<Self, QuantizationFailure> {
+        let clock = Instant::now();
+        let read = |metric: &Metric| SeamlessLayout::new(&piece.mesh, metric, map, aligned);
+        let mut layout = match read(metric) {
+            // Triangles too thin for arithmetic open up where every edge is longer.
+            Err(QuantizationFailure::Unreadable) => {
+                let by = metric.lengthening(&piece.mesh, SLACK);
+                read(&metric.lengthened(&piece.mesh, by))?.with_size_of(map)
             }
-            let is_bad = |&i: &usize| match i.checked_sub(n) {
-                None => !self.allows(i, self.values[i]),
-                Some(k) => !self.has_room(k, &[]),
-            };
-            let next = (0..n + all).map(|k| (at + k) % (n + all)).find(is_bad);
-            let Some(target) = next else { break };
-            at = target + 1;
-            let vectors: Vec<usize> = match target.checked_sub(n) {
-                None => touching[target].clone(),
-                Some(k) => {
-                    let ways = self.problem.spans[k].ways.clone();
-                    let mut all: Vec<usize> = ways.flat_map(|i| touching[i].clone()).collect();
-                    all.sort_unstable();
-                    all.dedup();
-                    all
-                }
-            };
-            let worth = vectors
-                .iter()
-                .flat_map(|&k| [(k, 1), (k, -1)])
-                .map(|step| (self.after(&[step]).1 + ENERGY_WEIGHT * self.cost(step), step));
-            match worth.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
-                Some((change, step)) if change < -1e-9 => {
-                    self.apply(&[step]);
-                    if self.violated < best.0 {
-                        best = (self.violated, self.x.clone());
-                    }
-                }
-                _ => self.weights[target] += 1.0,
+            layout => layout?,
+        };
+        let energy = match options.rounding {
+            RoundingMethod::Constrained => layout.reduced_energy()?,
+            RoundingMethod::Greedy => layout.reduced_dirichlet()?,
+        };
+        let obstacles = Obstacles::new(&layout)?;
+        let stats = QuantizationStats {
+            faces: piece.mesh.n_faces(),
+            integers: layout.coordinates.len(),
+            seconds_reduction: clock.elapsed().as_secs_f64(),
+            ..Default::default()
+        };
+        Ok(Self { piece, options, layout, energy, obstacles, coarsest: None, stats })
+    }
+
+    /// Side of a square with the area of the component, mesh units.
+    pub(crate) fn side(&self) -> f64 {
+        self.layout.side()
+    }
+
+    /// The map for cells of a size in mesh units; where there is none, that of a grid nearby, or else the coarsest
+    /// one that is found. Its UVs begin at a column.
+    ///
+    /// Errors only as long as no map has been found: later, the coarsest so far takes the place of one.
+    ///
+    /// # Errors
+    /// [`QuantizationFailure`], of the first grid.
+    pub(crate) fn place(
+        &mut self,
+        cell: f64,
+        column: i64,
+        accept: &mut Acceptance<'_>,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Placement, QuantizationFailure> {
+        let is_greedy = self.options.rounding == RoundingMethod::Greedy;
+        let fewest = if is_greedy || self.piece.mesh.has_boundary() { 1.0 } else { FEWEST_CELLS };
+        let asked = cell.min(self.layout.side() / fewest.sqrt()) / self.layout.unit;
+        let finer = REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k));
+        let n_shares = match &self.coarsest {
+            _ if is_greedy => 1,
+            Some(_) => FEW_NEARBY,
+            None => usize::MAX,
+        };
+        let (mut first, mut is_hopeless) = (None, false);
+        for (k, share) in NEARBY.into_iter().chain(finer).take(n_shares).enumerate() {
+            if is_hopeless && k < NEARBY.len() {
+                continue;
             }
-        }
-        self.x = best.1;
-        Ok(self.violated == 0)
-    }
-
-    /// For each constraint the vectors of the basis that move it.
-    fn touching(&self) -> Vec<Vec<usize>> {
-        let mut touching = vec![Vec::new(); self.problem.constraints.len()];
-        for (k, moved) in self.moved.iter().enumerate() {
-            moved.iter().for_each(|&(i, _)| touching[i].push(k));
-        }
-        touching
-    }
-
-    /// Whether moves of this energy are worth it.
-    fn is_better(&self, cost: f64, moves: &[Move]) -> bool {
-        let after = self.violated_after(moves);
-        after < self.violated || (after == self.violated && cost < -self.gain)
-    }
-
-    /// The first single move worth it, the cheapest first.
-    fn best_single(&self) -> Option<Vec<Move>> {
-        let moves = (0..self.x.len()).flat_map(|k| [(k, 1), (k, -1)]);
-        let mut moves: Vec<(f64, Move)> = moves.map(|m| (self.cost(m), m)).collect();
-        if self.violated == 0 {
-            moves.retain(|m| m.0 < -self.gain);
-        }
-        moves.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        moves.truncate(TRIED);
-        moves.into_iter().find(|&(cost, m)| self.is_better(cost, &[m])).map(|(_, m)| vec![m])
-    }
-
-    /// The coordinates that move a violated constraint, or a span without room.
-    fn involved(&self) -> Vec<bool> {
-        let constraints = 0..self.problem.constraints.len();
-        let mut is_bad: Vec<bool> = constraints.map(|i| !self.allows(i, self.values[i])).collect();
-        for (k, span) in self.problem.spans.iter().enumerate() {
-            if !self.has_room(k, &[]) {
-                is_bad[span.ways.clone()].fill(true);
+            if first.is_some() && self.stats.roundings >= self.options.effort {
+                break;
             }
-        }
-        self.moved.iter().map(|moved| moved.iter().any(|(i, _)| is_bad[*i])).collect()
-    }
-
-    /// The best pair among the cheapest ones; while constraints are violated, of those that touch one.
-    fn best_pair(&self) -> Option<Vec<Move>> {
-        let limit = if self.violated == 0 { -self.gain } else { f64::INFINITY };
-        let involved = if self.violated == 0 { Vec::new() } else { self.involved() };
-        let is_involved = |k: usize| self.violated == 0 || involved[k];
-        let mut pairs: Vec<(f64, [Move; 2])> = Vec::new();
-        for i in 0..self.x.len() {
-            let row = self.matrix.row(i);
-            for step in [1, -1] {
-                let own = self.cost((i, step));
-                for (j, entry) in row.iter().enumerate().take(i) {
-                    if !is_involved(i) && !is_involved(j) {
-                        continue;
-                    }
-                    for other in [1, -1] {
-                        let coupling = 2.0 * (step * other) as f64 * entry;
-                        let cost = own + self.cost((j, other)) + coupling;
-                        if cost < limit {
-                            pairs.push((cost, [(j, other), (i, step)]));
-                        }
-                    }
+            match self.try_grid(share.sqrt() * asked, column, accept, watch) {
+                Ok(placement) => return Ok(self.placed(placement, asked, first)),
+                Err(failure) if !failure.is_of_grid() => return Err(failure),
+                Err(failure) => {
+                    is_hopeless = matches!(failure, QuantizationFailure::TooCoarse { count, .. } if count > HOPELESS);
+                    first = first.or(Some(failure));
                 }
             }
         }
-        let order =
-            |a: &(f64, [Move; 2]), b: &(f64, [Move; 2])| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        if pairs.len() > TRIED {
-            pairs.select_nth_unstable_by(TRIED, order);
-            pairs.truncate(TRIED);
+        match &self.coarsest {
+            None => Err(first.unwrap_or(QuantizationFailure::Refused)),
+            Some(coarsest) => Ok(self.placed(self.written(coarsest, column)?, asked, first)),
         }
-        pairs.sort_by(order);
-        let worth = pairs.into_iter().filter(|(cost, moves)| self.is_better(*cost, moves));
-        worth.min_by_key(|(_, moves)| self.violated_after(moves)).map(|(_, moves)| moves.to_vec())
     }
 
-    fn apply(&mut self, moves: &[Move]) {
-        self.violated = self.violated_after(moves);
-        for (i, value) in self.changed(moves) {
-            self.values[i] = value;
+    /// A placement, with what was asked for in its stead.
+    fn placed(
+        &self,
+        placement: Placement,
+        asked: f64,
+        failure: Option<QuantizationFailure>,
+    ) -> Placement {
+        let refined_because = failure.map(|failure| failure.in_whole(self.piece).to_string());
+        Placement { asked: asked * self.layout.unit, refined_because, ..placement }
+    }
+
+    /// How a placement was made, with all the work done so far.
+    pub(crate) fn stats(&self, placement: Placement) -> QuantizationStats {
+        let Placement { quads, cell, asked, refined_because, .. } = placement;
+        let refinements = (2.0 * (asked / cell).ln() / REFINEMENT.ln()).round().max(0.0) as usize;
+        QuantizationStats { quads, cell, refinements, refined_because, ..self.stats.clone() }
+    }
+
+    /// One grid: rounds until the layout reaches the integers, polishes it there, writes it in exact numbers,
+    /// certifies it and asks the caller.
+    ///
+    /// # Errors
+    /// [`QuantizationFailure`].
+    fn try_grid(
+        &mut self,
+        h: f64,
+        column: i64,
+        accept: &mut Acceptance<'_>,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Placement, QuantizationFailure> {
+        self.stats.grids += 1;
+        let candidate = match self.options.rounding {
+            RoundingMethod::Constrained => self.reach(h, watch)?,
+            RoundingMethod::Greedy => self.follow(h)?,
+        };
+        let placement = self.written(&candidate, column)?;
+        if !accept(self.piece, &placement.corner_uvs) {
+            return Err(QuantizationFailure::Refused);
         }
-        for &(k, step) in moves {
-            self.problem.moves.vectors[k].iter().for_each(|&(i, c)| self.x[i] += step * c);
-            let scale = 2.0 * step as f64;
-            let row = self.matrix.row(k);
-            self.gradient.iter_mut().zip(row).for_each(|(g, p)| *g += scale * p);
+        if self.coarsest.as_ref().is_none_or(|coarsest| coarsest.h < h) {
+            self.coarsest = Some(candidate);
         }
+        Ok(placement)
+    }
+
+    /// Rounding without any heed to constraints, and the layout at once at the integers.
+    fn follow(&mut self, h: f64) -> Result<Candidate, QuantizationFailure> {
+        let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;
+        let held = self.layout.space.expand(&round_greedily(&problem))?;
+        let y = self.layout.follow(&in_layout(&held, h));
+        Ok(Candidate { h, held, y })
+    }
+
+    /// Rounds until the layout can move to the integers, each time with the cuts that the last path has taught.
+    ///
+    /// # Errors
+    /// [`QuantizationFailure`].
+    fn reach(
+        &mut self,
+        h: f64,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Candidate, QuantizationFailure> {
+        let mut start = None;
+        let mut failure = QuantizationFailure::Refused;
+        for _ in 0..MOST_ROUNDINGS {
+            let clock = Instant::now();
+            let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;
+            let rounding = round_near(&problem, start.take(), watch)?;
+            self.stats.roundings += 1;
+            self.stats.second_roundings += usize::from(rounding.is_second);
+            self.stats.repairs += usize::from(rounding.is_repaired);
+            self.stats.constraints = problem.constraints.len();
+            self.stats.seconds_rounding += clock.elapsed().as_secs_f64();
+            if rounding.violated.count > 0 {
+                return Err(too_coarse(&problem, &rounding));
+            }
+
+            let clock = Instant::now();
+            let held = self.layout.space.expand(&rounding.x)?;
+            let (y, target) = (self.layout.y.clone(), in_layout(&held, h));
+            let Advance { y, reached, moves } =
+                advance(&mut self.layout.problem, y, &target, watch)?;
+            self.stats.moves = moves;
+            self.stats.seconds_moving += clock.elapsed().as_secs_f64();
+            if reached == 1.0 {
+                let clock = Instant::now();
+                let problem = &mut self.layout.problem;
+                let polished = minimize(problem, y, &SymmetricDirichlet, &POLISH, watch)?;
+                self.stats.polish = polished.iterations;
+                self.stats.seconds_polish += clock.elapsed().as_secs_f64();
+                return Ok(Candidate { h, held, y: polished.y });
+            }
+
+            let z = self.layout.problem.space().expand(&y);
+            let cuts = farkas_cuts(&self.layout.scene(&z), self.layout.problem.triangles())?;
+            let face = cuts.first().map_or(0, |cut| cut.face.0);
+            failure = QuantizationFailure::Blocked { face, reached };
+            if cuts.is_empty() {
+                break;
+            }
+            let here = self.layout.space.read(&z).0;
+            self.stats.cuts += cuts.len();
+            self.obstacles.learn(cuts.into_iter().map(|cut| {
+                let rule = cut.beyond(&rounding.x, &here, h);
+                (cut, rule)
+            }));
+            start = Some(rounding.x);
+        }
+        Err(failure)
+    }
+
+    /// A candidate in exact numbers, certified.
+    fn written(
+        &self,
+        candidate: &Candidate,
+        column: i64,
+    ) -> Result<Placement, QuantizationFailure> {
+        let Candidate { h, held, y } = candidate;
+        let (corner_uvs, columns) = self.layout.corner_uvs(held, y, *h, column)?;
+        let (mesh, aligned) = (&self.piece.mesh, &self.layout.aligned);
+        let map =
+            IntegerGridMap::certify_aligned(mesh, corner_uvs, aligned, &self.options.tolerance)?;
+        let (quads, cell) = (map.certificate().area, h * self.layout.unit);
+        let corner_uvs = map.corner_uvs().to_vec();
+        Ok(Placement { corner_uvs, columns, quads, cell, asked: cell, refined_because: None })
     }
 }
 
-/// For each vector of the basis the constraints it moves, and how.
-fn moved(problem: &RoundingProblem) -> Vec<Vec<(usize, [i64; 2])>> {
-    // For each coordinate the constraints it occurs in.
-    let mut occurs: Vec<Vec<(usize, [i64; 2])>> = vec![Vec::new(); problem.mean.len()];
-    for (i, constraint) in problem.constraints.iter().enumerate() {
-        for (part, row) in constraint.rows.iter().enumerate() {
-            for &(k, c) in row {
-                let mut step = [0; 2];
-                step[part] = c;
-                occurs[k].push((i, step));
-            }
+/// Held unknowns in the units of the layout, for cells of size `h`.
+fn in_layout(held: &[i64], h: f64) -> Vec<f64> {
+    held.iter().map(|&x| x as f64 * h).collect()
+}
+
+/// Integers near those that taught the last cut, if there are some that satisfy it too, or else new ones.
+fn round_near(
+    problem: &RoundingProblem<'_>,
+    last: Option<Vec<i64>>,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Rounding, Cancelled> {
+    if let Some(x) = last {
+        let near = improve(problem, x, watch)?;
+        if near.violated.count == 0 {
+            return Ok(near);
         }
     }
-    let along = |vector: &Row| {
-        let mut steps: Vec<(usize, [i64; 2])> = vector
-            .iter()
-            .flat_map(|&(k, c)| occurs[k].iter().map(move |&(i, [u, v])| (i, [c * u, c * v])))
-            .collect();
-        steps.sort_unstable();
-        let sum = |group: &[(usize, [i64; 2])]| {
-            group.iter().fold((group[0].0, [0; 2]), |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
-        };
-        let sums = steps.chunk_by(|a, b| a.0 == b.0).map(sum);
-        sums.filter(|(_, step)| *step != [0; 2]).collect()
-    };
-    problem.moves.vectors.iter().map(along).collect()
+    round(problem, watch)
+}
+
+/// Names the lines that a rounding has not kept.
+fn too_coarse(problem: &RoundingProblem<'_>, rounding: &Rounding) -> QuantizationFailure {
+    let ends = |&i: &usize| problem.constraints[i].ends.map(|ends| ends.map(|v| v.0));
+    let mut pairs: Vec<[u32; 2]> = rounding.violated.involved.iter().filter_map(ends).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    QuantizationFailure::TooCoarse { count: rounding.violated.count, pairs }
 }

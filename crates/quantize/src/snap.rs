@@ -1,7 +1,8 @@
 //! From a layout with integral seams to doubles whose seams fit to the last bit.
 
-use super::gauss::{Form, Gauss, Overflow};
-use super::space::{Base, IntegerSpace};
+use crate::base::Base;
+use crate::gauss::{Form, Gauss, Overflow};
+use crate::space::IntegerSpace;
 use num_complex::Complex64;
 use seamstress_parametrize::quarter::turn;
 

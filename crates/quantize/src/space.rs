@@ -1,29 +1,16 @@
 //! Layouts as exact functions of vertex positions and of what must be integral.
 
-use super::conditional::{Row, apply};
-use super::gauss::{Form, Gauss, Overflow, add_scaled};
-use super::isolines::{Levels, Tie, level, part, tied};
-use super::lattice::Lattice;
-use super::walk::Walker;
+use crate::base::Base;
+use crate::gauss::{Form, Gauss, Overflow, add_scaled};
+use crate::isolines::{Levels, Tie, level, part, tied};
+use crate::lattice::Lattice;
+use crate::linear::{Row, apply};
+use crate::walk::Walker;
 use num_complex::Complex64;
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, VertexData};
 use seamstress_parametrize::cut::{Cut, SeamGraph};
 use seamstress_parametrize::layout::space::LinearSpace;
 use seamstress_parametrize::quarter::{turn, unit};
-
-/// What a wedge's position depends on besides the integral variables.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Base {
-    /// `i^turns` times the position of an ordinary vertex.
-    Ordinary {
-        /// Its number among the ordinary vertices.
-        vertex: u32,
-        /// Quarter turns.
-        turns: i32,
-    },
-    /// Nothing: the wedge is at a grid point, or at the vertex that is held at the origin.
-    Fixed,
-}
 
 /// What of a mesh has to come to lie on the grid.
 #[derive(Debug, Clone)]
@@ -44,7 +31,7 @@ impl GridNeeds {
 }
 
 /// `z_wedge = i^turns x_vertex + form in X`, with X the translation of every chain of seams and the
-/// position of every grid point, all of them integral in an integer map; on an isoline one coordinate of
+/// position of every grid point, all of them integral in an integer-grid map; on an isoline one coordinate of
 /// `x_vertex` is integral as well.
 ///
 /// The *held* unknowns are the real and imaginary parts of X by turns, then the level of every isoline that

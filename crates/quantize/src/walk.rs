@@ -1,7 +1,7 @@
 //! How the wedges around each vertex follow from each other.
 
-use super::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
-use super::space::Base;
+use crate::base::Base;
+use crate::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
 use seamstress_mesh::{Halfedge, HalfedgeData, TriMesh, Vertex};
 use seamstress_parametrize::cut::{Cut, SeamGraph};
 

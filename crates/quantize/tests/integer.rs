@@ -1,19 +1,20 @@
-//! Integer maps of small shapes, judged by their certificate and by a check of their own.
+//! Integer-grid maps of small shapes, judged by their certificate and by a check of their own.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
+use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, TriMesh};
 use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, Violation, make_map};
 use seamstress_quantize::{
-    GridSize, IntegerCertificate, IntegerError, IntegerMap, IntegerOptions, IntegerRounding,
-    IntegerSolution, IntegralTolerance, to_integer_map,
+    GridSize, IntegerCertificate, IntegerGridMap, IntegralTolerance, Quantization, QuantizeError,
+    QuantizeOptions, RoundingMethod, quantize,
 };
 use seamstress_testkit as testkit;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 
-fn integer(soup: &TriangleSoup, size: GridSize) -> (TriMesh, IntegerSolution) {
+fn integer(soup: &TriangleSoup, size: GridSize) -> (TriMesh, Quantization) {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
-    let options = IntegerOptions { size, ..Default::default() };
+    let options = QuantizeOptions { size, ..Default::default() };
     let solution = run(&mesh, soup, &options).unwrap();
     (mesh, solution)
 }
@@ -21,11 +22,11 @@ fn integer(soup: &TriangleSoup, size: GridSize) -> (TriMesh, IntegerSolution) {
 fn run(
     mesh: &TriMesh,
     soup: &TriangleSoup,
-    options: &IntegerOptions,
-) -> Result<IntegerSolution, IntegerError> {
+    options: &QuantizeOptions,
+) -> Result<Quantization, QuantizeError> {
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
-    to_integer_map(mesh, &soup.positions, &map, options, &mut go_on)
+    quantize(mesh, &soup.positions, &map, &EdgeSet::new(mesh, []), options, &mut go_on)
 }
 
 /// The two images of every edge differ by a quarter turn and a whole translation, in whole numbers of a
@@ -108,12 +109,12 @@ fn shapes_of_every_kind_have_integer_maps() {
 }
 
 #[test]
-fn integers_behind_a_wall_are_rounded_again() {
+fn integers_behind_a_cut_are_rounded_again() {
     // Far fewer cells than its cones have room for.
     let soup = testkit::random_surface(11);
     let (_, solution) = integer(&soup, GridSize::Quads(80.0));
     check_exactly(&soup, solution.map.corner_uvs());
-    assert!(solution.components[0].walls > 0, "the way is free from the start");
+    assert!(solution.components[0].cuts > 0, "the path is free from the start");
     assert_eq!(solution.refinements(), 0);
 }
 
@@ -163,10 +164,10 @@ fn a_triangle_without_area_is_no_obstacle() {
 fn greedy_rounding_is_refused_where_it_flips() {
     let soup = testkit::bumpy(&testkit::icosphere(2), 0.25, 2);
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
-    let rounding = IntegerRounding::Greedy;
-    let options = IntegerOptions { size: GridSize::Quads(2.0), rounding, ..Default::default() };
+    let rounding = RoundingMethod::Greedy;
+    let options = QuantizeOptions { size: GridSize::Quads(2.0), rounding, ..Default::default() };
     match run(&mesh, &soup, &options) {
-        Err(IntegerError::Uncertified(violations)) => {
+        Err(QuantizeError::Uncertified(violations)) => {
             let is_flip = |v: &Violation| {
                 matches!(v, Violation::FlippedTriangle { .. } | Violation::CollapsedTriangle { .. })
             };
@@ -175,7 +176,7 @@ fn greedy_rounding_is_refused_where_it_flips() {
         other => panic!("{other:?}"),
     }
     // On a fine grid the greedy choice is harmless.
-    let options = IntegerOptions { size: GridSize::Quads(20_000.0), ..options };
+    let options = QuantizeOptions { size: GridSize::Quads(20_000.0), ..options };
     check_exactly(&soup, run(&mesh, &soup, &options).unwrap().map.corner_uvs());
 }
 
@@ -185,8 +186,9 @@ fn the_certificate_refuses_what_is_not_integral() {
     let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
     let good = solution.map.corner_uvs().to_vec();
     let tolerance = Tolerance::new(1e-2, 0.1).unwrap();
-    let refused = |uvs: Vec<[f64; 2]>| IntegerMap::certify(&mesh, uvs, &tolerance).unwrap_err().0;
-    assert!(IntegerMap::certify(&mesh, good.clone(), &tolerance).is_ok());
+    let refused =
+        |uvs: Vec<[f64; 2]>| IntegerGridMap::certify(&mesh, uvs, &tolerance).unwrap_err().0;
+    assert!(IntegerGridMap::certify(&mesh, good.clone(), &tolerance).is_ok());
 
     // one corner moved by its last bit
     let mut nudged = good.clone();
@@ -279,13 +281,14 @@ fn bad_sizes_and_cancelling() {
     let soup = testkit::icosphere(1);
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let options = IntegerOptions { size: GridSize::Quads(size), ..Default::default() };
-        assert!(matches!(run(&mesh, &soup, &options), Err(IntegerError::BadSize)));
+        let options = QuantizeOptions { size: GridSize::Quads(size), ..Default::default() };
+        assert!(matches!(run(&mesh, &soup, &options), Err(QuantizeError::BadSize)));
     }
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
     let mut stop = |_| ControlFlow::Break(());
-    let options = IntegerOptions::default();
-    let stopped = to_integer_map(&mesh, &soup.positions, &map, &options, &mut stop);
-    assert!(matches!(stopped, Err(IntegerError::Cancelled(_))));
+    let options = QuantizeOptions::default();
+    let stopped =
+        quantize(&mesh, &soup.positions, &map, &EdgeSet::new(&mesh, []), &options, &mut stop);
+    assert!(matches!(stopped, Err(QuantizeError::Cancelled(_))));
 }

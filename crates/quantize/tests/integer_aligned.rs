@@ -10,8 +10,8 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{TriMesh, Vertex};
 use seamstress_parametrize::{MapOptions, Tolerance, Violation, make_aligned_map, make_map};
 use seamstress_quantize::{
-    GridSize, IntegerError, IntegerMap, IntegerOptions, IntegerRounding, IntegerSolution,
-    to_aligned_integer_map,
+    GridSize, IntegerGridMap, Quantization, QuantizeError, QuantizeOptions, RoundingMethod,
+    quantize,
 };
 use seamstress_testkit as kit;
 use std::ops::ControlFlow;
@@ -27,8 +27,8 @@ fn features(mesh: &TriMesh, soup: &TriangleSoup) -> EdgeSet {
 fn rounded(
     soup: &TriangleSoup,
     size: GridSize,
-    rounding: IntegerRounding,
-) -> (TriMesh, EdgeSet, Result<IntegerSolution, IntegerError>) {
+    rounding: RoundingMethod,
+) -> (TriMesh, EdgeSet, Result<Quantization, QuantizeError>) {
     let mesh = mesh_of(soup);
     let edges = features(&mesh, soup);
     let mut go_on = |_| ControlFlow::Continue(());
@@ -39,14 +39,14 @@ fn rounded(
     assert!(start.released.is_empty() || !mesh.has_boundary(), "{:?}", start.released);
     let released = start.released.iter().map(|f| f.vertices.map(Vertex));
     let edges = edges.without(&mesh, released.map(|[a, b]| mesh.edge_between(a, b).unwrap()));
-    let options = IntegerOptions { size, rounding, ..Default::default() };
-    let made = to_aligned_integer_map(&mesh, positions, &start.map, &edges, &options, &mut go_on);
+    let options = QuantizeOptions { size, rounding, ..Default::default() };
+    let made = quantize(&mesh, positions, &start.map, &edges, &options, &mut go_on);
     (mesh, edges, made)
 }
 
 #[track_caller]
-fn integer(soup: &TriangleSoup, size: GridSize) -> (TriMesh, EdgeSet, IntegerSolution) {
-    let (mesh, edges, made) = rounded(soup, size, IntegerRounding::Constrained);
+fn integer(soup: &TriangleSoup, size: GridSize) -> (TriMesh, EdgeSet, Quantization) {
+    let (mesh, edges, made) = rounded(soup, size, RoundingMethod::Constrained);
     (mesh, edges, made.unwrap())
 }
 
@@ -124,7 +124,7 @@ fn parallel_features_stay_a_cell_apart() {
 #[test]
 fn greedy_rounding_keeps_features_too_where_the_grid_is_fine() {
     let soup = kit::subdivide(&kit::l_bracket());
-    let (mesh, edges, made) = rounded(&soup, GridSize::Quads(5000.0), IntegerRounding::Greedy);
+    let (mesh, edges, made) = rounded(&soup, GridSize::Quads(5000.0), RoundingMethod::Greedy);
     let solution = made.unwrap();
     assert_eq!(faults(&mesh, &edges, solution.map.corner_uvs()), 0);
 }
@@ -132,7 +132,7 @@ fn greedy_rounding_keeps_features_too_where_the_grid_is_fine() {
 #[test]
 fn the_certificate_refuses_features_off_the_grid() {
     let tolerance = Tolerance::default();
-    let moved = |solution: &IntegerSolution, by: [f64; 2]| {
+    let moved = |solution: &Quantization, by: [f64; 2]| {
         let shift = |uv: &[f64; 2]| [uv[0] + by[0], uv[1] + by[1]];
         solution.map.corner_uvs().iter().map(shift).collect::<Vec<_>>()
     };
@@ -140,13 +140,13 @@ fn the_certificate_refuses_features_off_the_grid() {
     let (mesh, edges, solution) = integer(&kit::disk_grid(3, 3), GridSize::Quads(100.0));
     let pairs = edges.vertex_pairs(&mesh);
     let half = moved(&solution, [0.5, 0.0]);
-    assert!(IntegerMap::certify(&mesh, half.clone(), &tolerance).is_ok());
-    let found = IntegerMap::certify_aligned(&mesh, half, &pairs, &tolerance).unwrap_err().0;
+    assert!(IntegerGridMap::certify(&mesh, half.clone(), &tolerance).is_ok());
+    let found = IntegerGridMap::certify_aligned(&mesh, half, &pairs, &tolerance).unwrap_err().0;
     let off = found.iter().filter(|v| matches!(v, Violation::OffIsoline { .. })).count();
     let corners = found.iter().filter(|v| matches!(v, Violation::FractionalCorner { .. })).count();
     assert_eq!((off, corners, found.len()), (6, 4, 10), "{found:?}");
     let whole = moved(&solution, [-7.0, 3.0]);
-    assert!(IntegerMap::certify_aligned(&mesh, whole, &pairs, &tolerance).is_ok());
+    assert!(IntegerGridMap::certify_aligned(&mesh, whole, &pairs, &tolerance).is_ok());
 
     // The last bit of one end of an edge on the rim.
     let mut nudged = solution.map.corner_uvs().to_vec();
@@ -157,7 +157,7 @@ fn the_certificate_refuses_features_off_the_grid() {
         let x = nudged[corner.at()][level];
         nudged[corner.at()][level] = if x == 0.0 { 1e-17 } else { f64::from_bits(x.to_bits() + 1) };
     }
-    let found = IntegerMap::certify_aligned(&mesh, nudged, &pairs, &tolerance).unwrap_err().0;
+    let found = IntegerGridMap::certify_aligned(&mesh, nudged, &pairs, &tolerance).unwrap_err().0;
     assert!(found.iter().any(|v| matches!(v, Violation::OffIsoline { .. })), "{found:?}");
 
     // A slanted edge is not aligned at all.
@@ -167,19 +167,19 @@ fn the_certificate_refuses_features_off_the_grid() {
     let diagonal = mesh.edges().find(|&h| !edges.contains(h) && mesh.twin(h).is_some());
     let all = EdgeSet::new(&mesh, mesh.edges());
     assert!(diagonal.is_some());
-    let options = IntegerOptions::default();
-    let made = to_aligned_integer_map(&mesh, &soup.positions, &map, &all, &options, &mut go_on);
-    assert!(matches!(made, Err(IntegerError::Misaligned(_))), "{made:?}");
+    let options = QuantizeOptions::default();
+    let made = quantize(&mesh, &soup.positions, &map, &all, &options, &mut go_on);
+    assert!(matches!(made, Err(QuantizeError::Misaligned(_))), "{made:?}");
 }
 
 #[test]
-fn isolines_behind_a_wall_are_rounded_again() {
+fn isolines_behind_a_cut_are_rounded_again() {
     // Boundaries that leave less than a cell between them.
     let torus = kit::with_boundaries(&kit::torus(16, 10, 2.0, 0.8), 6, 5);
-    let soup = kit::bumpy(&torus, 0.05, 3);
-    let (mesh, edges, solution) = integer(&soup, GridSize::Quads(40.0));
+    let soup = kit::bumpy(&torus, 0.1, 6);
+    let (mesh, edges, solution) = integer(&soup, GridSize::Quads(60.0));
     let component = &solution.components[0];
-    assert!(component.walls > 0, "the way is free from the start");
-    assert_eq!((component.nudges, component.refinements), (0, 0));
+    assert!(component.cuts > 0, "the path is free from the start");
+    assert_eq!(component.refinements, 0);
     assert_eq!(faults(&mesh, &edges, solution.map.corner_uvs()), 0);
 }

@@ -13,8 +13,7 @@ use seamstress_mesh::{HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use seamstress_parametrize::cut::{Cut, connect_cones};
 use seamstress_parametrize::cut::{regauge, turned_vertices};
 use seamstress_parametrize::{MapOptions, SeamlessMap, make_aligned_map};
-use seamstress_quantize::isolines::turning_points;
-use seamstress_quantize::space::{GridNeeds, IntegerSpace};
+use seamstress_quantize::internals::{GridNeeds, IntegerSpace, turning_points};
 use seamstress_testkit::{self as kit, Rng};
 use std::ops::ControlFlow;
 

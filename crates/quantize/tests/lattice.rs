@@ -2,8 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
 use proptest::prelude::*;
-use seamstress_quantize::gauss::{Form, Gauss, add_scaled};
-use seamstress_quantize::lattice::Lattice;
+use seamstress_quantize::internals::{Form, Gauss, Lattice, add_scaled};
 use seamstress_testkit::Rng;
 
 /// A system whose integer solutions are known: the combinations of the first `rank` columns of a matrix

@@ -4,15 +4,19 @@ use crate::certify::CertifyOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{AlignedFeatures, FeatureReport, Features, edges_of};
+use crate::finding::Elements;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, GridSize, IntegerMapOptions};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
+use seamstress_mesh::TriMesh;
+use seamstress_mesh::features::EdgeSet;
 use seamstress_parametrize::map::Certificate;
 use seamstress_parametrize::{self as method};
 use seamstress_quantize::{
-    IntegerCertificate, IntegerError, IntegerSolution, IntegerStats, to_aligned_integer_map,
+    IntegerCertificate, Quantization, QuantizationFailure, QuantizationStats, QuantizeError,
+    quantize,
 };
 use serde::Serialize;
 
@@ -34,7 +38,7 @@ pub struct IntegerMapReport {
     /// The grid asked for and the one made.
     pub grid: GridReport,
     /// How the map of each component was made, in order of first faces.
-    pub components: Vec<IntegerStats>,
+    pub components: Vec<QuantizationStats>,
     /// Distortion of the seamless map it was made from.
     pub distortion_before: Distortion,
     /// Its own distortion.
@@ -74,7 +78,7 @@ pub struct GridReport {
 }
 
 impl GridReport {
-    pub(crate) fn new(requested: GridSize, solution: &IntegerSolution) -> Self {
+    pub(crate) fn new(requested: GridSize, solution: &Quantization) -> Self {
         Self {
             requested,
             quads: solution.quads(),
@@ -135,6 +139,14 @@ pub(crate) struct SeamlessStart {
     pub(crate) features: Option<AlignedFeatures>,
 }
 
+impl SeamlessStart {
+    /// The features that it follows.
+    pub(crate) fn kept(&self, mesh: &TriMesh) -> EdgeSet {
+        let kept = self.features.as_ref().map_or(&[][..], |features| &features.kept);
+        edges_of(mesh, kept)
+    }
+}
+
 impl Surface {
     /// Makes a seamless map whose cones suit the grid, and rounds it to an integer-grid map.
     ///
@@ -144,7 +156,7 @@ impl Surface {
         options.validate()?;
         let made = self.context().run(|watcher| {
             let start = self.make_seamless(options, watcher)?;
-            let solution = self.make_integer(&start, options.size, options, watcher)?;
+            let solution = self.make_integer(&start, options, watcher)?;
             Ok(self.integer_grid_map(solution, start.features, options))
         });
         made.map_err(|error| error.of(self.input()))
@@ -169,7 +181,7 @@ impl Surface {
             let map = self.seamless_map(corner_uvs, certify)?;
             let features = self.followed(&map, &options.map.features)?;
             let start = SeamlessStart { map, features };
-            let solution = self.make_integer(&start, options.size, options, watcher)?;
+            let solution = self.make_integer(&start, options, watcher)?;
             Ok(self.integer_grid_map(solution, start.features, options))
         });
         made.map_err(|error| error.of(self.input()))
@@ -208,35 +220,41 @@ impl Surface {
     pub(crate) fn make_integer(
         &self,
         start: &SeamlessStart,
-        size: GridSize,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
-    ) -> Result<IntegerSolution, Error> {
-        let kept: &[[u32; 2]] = start.features.as_ref().map_or(&[], |features| &features.kept);
-        let mut settings = options.to_quantize();
-        settings.size = size.to_quantize();
+    ) -> Result<Quantization, Error> {
+        let kept = start.kept(self.mesh());
         let mut observe = |progress| watcher.observe(progress);
-        let made = to_aligned_integer_map(
-            self.mesh(),
-            self.positions(),
-            &start.map,
-            &edges_of(self.mesh(), kept),
-            &settings,
-            &mut observe,
-        );
-        made.map_err(|cause| match cause {
-            IntegerError::Cancelled(_) => Error::new(ErrorKind::Cancelled, "stopped on request"),
-            cause => {
-                let text = format!("no certified integer-grid map could be made: {cause}");
-                let error = Error::new(ErrorKind::NoIntegerMap, text);
-                error.at_stage(Some(Stage::Quantization)).with_hint(hint(options.rounding))
+        let (map, settings) = (&start.map, options.to_quantize());
+        quantize(self.mesh(), self.positions(), map, &kept, &settings, &mut observe)
+            .map_err(|cause| self.no_integer_map(&cause, options.rounding))
+    }
+
+    /// Why a map could not be rounded, with the elements that it names.
+    pub(crate) fn no_integer_map(&self, cause: &QuantizeError, rounding: GridRounding) -> Error {
+        if matches!(cause, QuantizeError::Cancelled(_)) {
+            return Error::new(ErrorKind::Cancelled, "stopped on request");
+        }
+        let text = format!("no certified integer-grid map could be made: {cause}");
+        let error = Error::new(ErrorKind::NoIntegerMap, text).with_hint(hint(rounding));
+        let mut elements = Elements::default();
+        if let QuantizeError::Component { cause, .. } = cause {
+            match cause {
+                QuantizationFailure::TooCoarse { pairs, .. } => {
+                    elements.vertices = pairs.as_flattened().to_vec();
+                    elements.vertices.sort_unstable();
+                    elements.vertices.dedup();
+                }
+                QuantizationFailure::Blocked { face, .. } => elements.faces = vec![*face],
+                _ => {}
             }
-        })
+        }
+        error.at_stage(Some(Stage::Quantization)).with_elements(self.in_input(&elements))
     }
 
     fn integer_grid_map(
         &self,
-        solution: IntegerSolution,
+        solution: Quantization,
         features: Option<AlignedFeatures>,
         options: &IntegerMapOptions,
     ) -> IntegerGridMap {

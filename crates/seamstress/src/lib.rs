@@ -130,4 +130,4 @@ pub use seamstress_parametrize::{
 };
 pub use seamstress_quads::extract::SurfacePoint;
 pub use seamstress_quads::{IrregularVertex, quality::Orientation};
-pub use seamstress_quantize::{IntegerCertificate, IntegerStats};
+pub use seamstress_quantize::{IntegerCertificate, QuantizationStats};

@@ -165,14 +165,6 @@ impl GridSize {
         }
     }
 
-    pub(crate) fn from_quantize(size: quantize::GridSize) -> Self {
-        match size {
-            quantize::GridSize::Quads(x) => Self::Quads(x),
-            quantize::GridSize::EdgeLength(x) => Self::EdgeLength(x),
-            quantize::GridSize::Scale(x) => Self::Scale(x),
-        }
-    }
-
     pub(crate) fn to_quantize(self) -> quantize::GridSize {
         match self {
             Self::Quads(x) => quantize::GridSize::Quads(x),
@@ -249,12 +241,12 @@ impl IntegerMapOptions {
         self.map.validate()
     }
 
-    pub(crate) fn to_quantize(&self) -> quantize::IntegerOptions {
+    pub(crate) fn to_quantize(&self) -> quantize::QuantizeOptions {
         let rounding = match self.rounding {
-            GridRounding::Constrained => quantize::IntegerRounding::Constrained,
-            GridRounding::Greedy => quantize::IntegerRounding::Greedy,
+            GridRounding::Constrained => quantize::RoundingMethod::Constrained,
+            GridRounding::Greedy => quantize::RoundingMethod::Greedy,
         };
-        quantize::IntegerOptions { size: self.size.to_quantize(), rounding, ..Default::default() }
+        quantize::QuantizeOptions { size: self.size.to_quantize(), rounding, ..Default::default() }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::features::FeatureReport;
 use crate::finding::Elements;
 use crate::integer::GridReport;
-use crate::options::{GridSize, IntegerMapOptions, QuadOptions, ShapeOptions};
+use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 #[cfg(feature = "io")]
@@ -15,7 +15,7 @@ use seamstress_quads::{
     self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
     QuadConnectivity, QuadFaults, SmoothOptions, UntangleOptions, manifold_quads,
 };
-use seamstress_quantize::{IntegerCertificate, IntegerStats};
+use seamstress_quantize::{IntegerCertificate, QuantizationStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
 #[cfg(feature = "io")]
@@ -53,13 +53,11 @@ pub struct QuadMeshReport {
     pub integer_certificate: Option<IntegerCertificate>,
     /// How it was made, component by component.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub components: Option<Vec<IntegerStats>>,
+    pub components: Option<Vec<QuantizationStats>>,
     /// The map that the quads were extracted from.
     pub map: ExtractedMap,
     /// The features asked for and what became of them.
     pub features: Option<FeatureReport>,
-    /// Coarser grids whose quads were no manifold.
-    pub manifold_refinements: usize,
     /// The quads.
     pub quads: QuadReport,
     /// What untangling moved.
@@ -287,17 +285,17 @@ impl Surface {
                 ..IntegerMapOptions::default()
             };
             let start = self.make_seamless(&integer, watcher)?;
-            let size = options.size.to_quantize();
-            let made = manifold_quads(self.mesh(), self.positions(), size, |size| {
-                self.make_integer(&start, GridSize::from_quantize(size), &integer, watcher)
-            })
-            .map_err(no_manifold)?;
+            let (kept, settings) = (start.kept(self.mesh()), integer.to_quantize());
+            let mut observe = |progress| watcher.observe(progress);
+            let (mesh, positions, map) = (self.mesh(), self.positions(), &start.map);
+            let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
+                .map_err(|cause| self.no_manifold(cause, &integer))?;
             watcher.enter(Stage::Shaping)?;
             let kept = start.features.as_ref().map_or(&[][..], |features| &features.kept);
             let mut extraction = made.extraction;
             let map = ExtractedMap::new(&extraction);
             let shaped = self.shape(&mut extraction, &options.shape, kept)?;
-            let solution = made.integer;
+            let solution = made.quantization;
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: Some(options.clone()),
@@ -308,7 +306,6 @@ impl Surface {
                 components: Some(solution.components),
                 map,
                 features: start.features.map(|features| features.report),
-                manifold_refinements: made.refinements,
                 quads: QuadReport::new(&extraction, Ok(&made.connectivity)),
                 mended: Some(shaped.0),
                 orientation: Some(shaped.1),
@@ -365,7 +362,6 @@ impl Surface {
                 components: None,
                 map,
                 features: (!features.is_none()).then_some(feature_report),
-                manifold_refinements: 0,
                 quads,
                 mended: shaped.map(|shaped| shaped.0),
                 orientation: shaped.map(|shaped| shaped.1),
@@ -409,6 +405,17 @@ impl Surface {
         Ok((untangled, orientation))
     }
 
+    /// Why there are no quads that are a manifold.
+    fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
+        match cause {
+            ManifoldError::Quantize(cause) => self.no_integer_map(&cause, options.rounding),
+            ManifoldError::NoManifold { faults, faces } => no_manifold_of(&faults)
+                .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
+                .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
+            other => Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}")),
+        }
+    }
+
     /// Why a map has no quads, with the elements it names.
     fn no_quads(&self, cause: &ExtractError, tolerance: f64) -> Error {
         let error = |text: String| {
@@ -449,15 +456,6 @@ fn folded(what: &str, faces: &[u32]) -> String {
         1 => format!("\n  1 {what} face: {}", shown.join(", ")),
         n if n > LISTED => format!("\n  {n} {what} faces: {} ...", shown.join(", ")),
         n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
-    }
-}
-
-fn no_manifold(cause: ManifoldError<Error>) -> Error {
-    match cause {
-        ManifoldError::Integer(error) => error,
-        ManifoldError::NoManifold(faults) => no_manifold_of(&faults)
-            .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
-        other => Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}")),
     }
 }
 

@@ -5,9 +5,9 @@ use crate::markdown::Table;
 use crate::meshes::{Selection, Subject};
 use crate::output::{Section, progress};
 use crate::verify::{Verdict, Verifier};
-use seamstress_quantize::IntegerStats;
+use seamstress_mesh::features::EdgeSet;
 use seamstress_quantize::{
-    GridSize, IntegerOptions, IntegerRounding, IntegerSolution, to_integer_map,
+    GridSize, Quantization, QuantizationStats, QuantizeOptions, RoundingMethod, quantize,
 };
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -89,17 +89,18 @@ struct Row {
     cones: usize,
     /// Seconds for the seamless map.
     seconds: f64,
-    solution: IntegerSolution,
+    solution: Quantization,
     verdict: Option<Verdict>,
 }
 
 fn measure_mesh(subject: &Subject, asked: f64, args: &Args) -> Result<Row, Box<dyn Error>> {
     let mesh = &subject.mesh;
     let (map, seconds) = seamless(&subject.name, mesh, asked, args.maps.as_deref())?;
-    let rounding = if args.greedy { IntegerRounding::Greedy } else { IntegerRounding::Constrained };
-    let options = IntegerOptions { size: GridSize::Quads(asked), rounding, ..Default::default() };
+    let rounding = if args.greedy { RoundingMethod::Greedy } else { RoundingMethod::Constrained };
+    let options = QuantizeOptions { size: GridSize::Quads(asked), rounding, ..Default::default() };
     let mut go_on = |_| ControlFlow::Continue(());
-    let solution = to_integer_map(&mesh.connectivity, &mesh.positions, &map, &options, &mut go_on)?;
+    let (connectivity, nothing) = (&mesh.connectivity, EdgeSet::new(&mesh.connectivity, []));
+    let solution = quantize(connectivity, &mesh.positions, &map, &nothing, &options, &mut go_on)?;
     let verdict = args.verify.as_deref().map(|script| {
         Verifier::new(script).check_uvs(mesh, solution.map.corner_uvs(), &["--integer".as_ref()])
     });
@@ -115,7 +116,7 @@ impl Row {
     fn cells(&self, subject: &Subject) -> Vec<String> {
         let solution = &self.solution;
         let sum =
-            |part: fn(&IntegerStats) -> f64| solution.components.iter().map(part).sum::<f64>();
+            |part: fn(&QuantizationStats) -> f64| solution.components.iter().map(part).sum::<f64>();
         let (before, after) = (&solution.before, &solution.distortion);
         let parts = [
             sum(|c| c.seconds_reduction),

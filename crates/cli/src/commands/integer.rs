@@ -8,8 +8,8 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
-    AtomicFile, CertifyOptions, Error, GridRounding, IntegerGridMap, IntegerMapOptions,
-    IntegerStats, MapFile, MapOptions, SurfaceOptions, TextureOptions,
+    AtomicFile, CertifyOptions, Error, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
+    MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -155,7 +155,7 @@ impl Command for IntegerArgs {
 
     fn stages(&self, map: &IntegerGridMap) -> Option<Vec<(&'static str, f64)>> {
         let components = &map.report().components;
-        let sum = |part: fn(&IntegerStats) -> f64| components.iter().map(part).sum::<f64>();
+        let sum = |part: fn(&QuantizationStats) -> f64| components.iter().map(part).sum::<f64>();
         Some(vec![
             ("reduction", sum(|c| c.seconds_reduction)),
             ("rounding", sum(|c| c.seconds_rounding)),

@@ -6,7 +6,7 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
-use crate::text::{counted, row};
+use crate::text::row;
 use seamstress::{
     AtomicFile, Error, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
 };
@@ -115,14 +115,7 @@ impl Command for QuadArgs {
         let report = quads.report();
         let mut rows = summary::surface_rows(&report.input);
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
-        rows.extend(report.grid.iter().map(|grid| {
-            let mut text = grid.to_string();
-            if report.manifold_refinements > 0 {
-                let times = counted(report.manifold_refinements, "time");
-                text += &format!("; {times} finer for the quads to be a manifold");
-            }
-            row("grid", &text)
-        }));
+        rows.extend(report.grid.iter().map(|grid| row("grid", &grid.to_string())));
         if report.features.is_some() {
             rows.extend(report.integer_certificate.iter().map(summary::integers_row));
         }

@@ -7,13 +7,14 @@ use crate::markdown::Table;
 use crate::meshes::{Mesh, Selection};
 use crate::output::{Section, progress};
 use crate::statistics::order;
+use seamstress_mesh::features::EdgeSet;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, split_polygons, surface_distance,
 };
 use seamstress_quads::{
     Constraints, QuadMesh, SmoothOptions, UntangleOptions, manifold_quads, smooth, untangle,
 };
-use seamstress_quantize::{GridSize, IntegerOptions, to_integer_map};
+use seamstress_quantize::{GridSize, QuantizeOptions};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -119,13 +120,11 @@ fn measure_mesh(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row,
     let (map, _) = seamless(name, mesh, asked, args.maps.as_deref())?;
     let (positions, faces) = (mesh.positions.as_slice(), mesh.faces());
     let source = (positions, faces.as_slice());
-    let size = GridSize::Quads(asked);
-    let made = manifold_quads(&mesh.connectivity, positions, size, |size| {
-        let options = IntegerOptions { size, ..Default::default() };
-        let mut go_on = |_| ControlFlow::Continue(());
-        to_integer_map(&mesh.connectivity, positions, &map, &options, &mut go_on)
-    })?;
-    let (integer, extraction) = (made.integer.map, made.extraction);
+    let options = QuantizeOptions { size: GridSize::Quads(asked), ..Default::default() };
+    let (connectivity, nothing) = (&mesh.connectivity, EdgeSet::new(&mesh.connectivity, []));
+    let mut go_on = |_| ControlFlow::Continue(());
+    let made = manifold_quads(connectivity, positions, &map, &nothing, &options, &mut go_on)?;
+    let (integer, extraction) = (made.quantization.map, made.extraction);
 
     let counts = check::count(extraction.mesh.quads())?;
     let (made, quads) = (extraction.mesh.positions(), extraction.mesh.quads());

@@ -1,7 +1,8 @@
 //! Fixing the displacements of connections one by one.
 
-use super::conditional::{Conditional, Effect, Row, apply};
-use super::rounding::{Constraint, RoundingProblem, Span};
+use super::conditional::{Conditional, Effect};
+use super::problem::{Constraint, RoundingProblem};
+use crate::linear::{Row, apply};
 use seamstress_parallel::prelude::*;
 
 /// Values tried for a connection, the cheapest first.
@@ -17,46 +18,14 @@ const DETERMINED: f64 = 1e-9;
 
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 pub(super) struct Fixing<'a> {
-    constraints: &'a [Constraint],
-    rows: FlatRows,
-    spans: &'a [Span],
-    /// The span that each constraint is a way of.
-    span_of: Vec<Option<usize>>,
+    problem: &'a RoundingProblem<'a>,
+    /// The joint constraint that each one is a member of.
+    memberships: Vec<Option<usize>>,
     now: Conditional,
     means: Vec<[f64; 2]>,
     variances: Vec<f64>,
     /// Variance below which a value is determined.
     determined: f64,
-}
-
-/// The rows of all constraints in one piece, since each fixing reads them all.
-struct FlatRows {
-    entries: Vec<(u32, f64)>,
-    /// Where the first row of each constraint begins, and its second.
-    starts: Vec<[usize; 2]>,
-}
-
-impl FlatRows {
-    fn new(constraints: &[Constraint]) -> Self {
-        let mut rows = Self { entries: Vec::new(), starts: Vec::new() };
-        for constraint in constraints {
-            let starts = constraint.rows.each_ref().map(|row| {
-                let start = rows.entries.len();
-                rows.entries.extend(row.iter().map(|&(k, c)| (k as u32, c as f64)));
-                start
-            });
-            rows.starts.push(starts);
-        }
-        rows.starts.push([rows.entries.len(); 2]);
-        rows
-    }
-
-    /// Both rows of a constraint times a vector.
-    fn apply(&self, i: usize, x: &[f64]) -> [f64; 2] {
-        let ([first, second], [end, _]) = (self.starts[i], self.starts[i + 1]);
-        [first..second, second..end]
-            .map(|range| self.entries[range].iter().map(|&(k, c)| c * x[k as usize]).sum())
-    }
 }
 
 /// One of the two rows of a connection that is about to be fixed.
@@ -83,19 +52,25 @@ impl Part {
     }
 }
 
+/// A value for a connection and what it does to the others.
+pub(super) struct Choice {
+    connection: usize,
+    parts: [Part; 2],
+    value: [i64; 2],
+}
+
 impl<'a> Fixing<'a> {
-    pub(super) fn new(problem: &'a RoundingProblem, start: Conditional) -> Self {
+    pub(super) fn new(problem: &'a RoundingProblem<'a>) -> Self {
+        let start = Conditional::new(problem.energy.covariance.clone(), problem.mean.clone());
         let constraints = &problem.constraints;
         let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
         let variance =
             |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
         Self {
-            constraints,
-            rows: FlatRows::new(constraints),
-            spans: &problem.spans,
-            span_of: problem.span_of(),
+            problem,
+            memberships: problem.memberships(),
             means: constraints.iter().map(mean).collect(),
-            variances: constraints.iter().map(variance).collect(),
+            variances: constraints.par_iter().map(variance).collect(),
             determined: DETERMINED * start.mean_variance(),
             now: start,
         }
@@ -106,67 +81,74 @@ impl<'a> Fixing<'a> {
         self.now
     }
 
+    /// The length of a connection now, grid units; at most what it was in the seamless map.
     pub(super) fn length(&self, i: usize) -> f64 {
         let [u, v] = self.means[i];
-        u.hypot(v).min(self.constraints[i].length)
+        u.hypot(v).min(self.problem.constraints[i].length)
     }
 
+    /// Whether the conditions so far do not determine a connection.
     pub(super) fn is_open(&self, i: usize) -> bool {
         self.variances[i] > self.determined
     }
 
-    /// Fixes a connection; false, and nothing changed, if no value will do.
-    pub(super) fn fix(&mut self, i: usize) -> bool {
+    /// The cheapest value for a connection that is long enough and makes no determined one vanish or turn around, if
+    /// there is one.
+    ///
+    /// That those determined with it have to be longer is left to the local search: to demand it here leads into dead
+    /// ends, with energies a hundred times as high.
+    pub(super) fn choose(&self, i: usize) -> Option<Choice> {
+        let problem = self.problem;
         let parts = self.parts(i);
         if parts.iter().any(|part| matches!(part.effect, Effect::NoUnit)) {
-            return false;
+            return None;
         }
         // Which connections get determined does not depend on the value.
         let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
-        let is_determined: Vec<bool> =
-            (0..self.constraints.len()).map(|j| left(j) <= self.determined).collect();
-        // The spans that get determined by it.
-        let is_settled =
-            |k: &usize| is_determined[self.spans[*k].ways.clone()].iter().all(|&is| is);
-        let mut settled: Vec<usize> = (0..self.constraints.len())
-            .filter(|&j| is_determined[j] && self.variances[j] > self.determined)
-            .filter_map(|j| self.span_of[j])
-            .filter(is_settled)
-            .collect();
-        settled.sort_unstable();
-        settled.dedup();
+        let all = 0..problem.constraints.len();
+        let is_determined: Vec<bool> = all.map(|j| left(j) <= self.determined).collect();
+        let is_new = |&j: &usize| is_determined[j] && self.is_open(j);
+        let new: Vec<usize> = (0..problem.constraints.len()).filter(is_new).collect();
+        let mut joint: Vec<usize> = new.iter().filter_map(|&j| self.memberships[j]).collect();
+        joint.dedup();
         let is_possible = |value: &[i64; 2]| {
             let errors = self.errors(i, &parts, *value);
             let fits = |part: usize| {
                 matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
             };
             let at = |j: usize| self.moved(j, &parts, errors);
-            let allows = |j: usize| !is_determined[j] || self.constraints[j].allows(at(j));
-            let leaves_room = |&k: &usize| self.spans[k].has_room(at);
+            let known = |j: usize| is_determined[j].then(|| at(j));
             fits(0)
                 && fits(1)
-                && (0..self.constraints.len()).all(allows)
-                && settled.iter().all(leaves_room)
+                && new.iter().all(|&j| problem.constraints[j].keeps_apart(at(j)))
+                && joint.iter().all(|&k| {
+                    let (members, rule) = &problem.joint[k];
+                    rule.allows(members.clone().map(known))
+                })
         };
-        let Some(value) = self.candidates(i, &parts).into_iter().find(is_possible) else {
-            return false;
-        };
-        let errors = self.errors(i, &parts, value);
-        for j in 0..self.constraints.len() {
+        let value = self.candidates(i, &parts).into_iter().find(is_possible)?;
+        Some(Choice { connection: i, parts, value })
+    }
+
+    /// Fixes a connection.
+    pub(super) fn fix(&mut self, choice: Choice) {
+        let Choice { connection, parts, value } = choice;
+        let errors = self.errors(connection, &parts, value);
+        for j in 0..self.problem.constraints.len() {
             self.means[j] = self.moved(j, &parts, errors);
             self.variances[j] -= parts[0].settles(j) + parts[1].settles(j);
         }
-        for ((part, row), value) in parts.into_iter().zip(&self.constraints[i].rows).zip(value) {
+        let rows = &self.problem.constraints[connection].rows;
+        for ((part, row), value) in parts.into_iter().zip(rows).zip(value) {
             if let Effect::Free { reduced, pivot } = part.effect {
                 self.now.fix(row, value, reduced, pivot);
             }
         }
-        true
     }
 
     /// What fixing the two rows of a connection, one after the other, would do.
     fn parts(&self, i: usize) -> [Part; 2] {
-        let rows = &self.constraints[i].rows;
+        let rows = &self.problem.constraints[i].rows;
         let spread = self.now.spread(&rows[0]);
         let effect = self.now.effect(&rows[0], None);
         let first = self.part(&rows[0], effect, &spread);
@@ -183,7 +165,7 @@ impl<'a> Fixing<'a> {
     fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
         // What is determined has no covariance with anything.
         let coupling = |(i, &variance): (usize, &f64)| match variance > self.determined {
-            true => self.rows.apply(i, spread),
+            true => self.problem.constraints[i].rows.each_ref().map(|row| apply(row, spread)),
             false => [0.0; 2],
         };
         let coupling =
@@ -206,7 +188,7 @@ impl<'a> Fixing<'a> {
 
     /// Allowed values of a connection near the one it has, by the energy they cost.
     fn candidates(&self, i: usize, parts: &[Part; 2]) -> Vec<[i64; 2]> {
-        let constraint = &self.constraints[i];
+        let constraint = &self.problem.constraints[i];
         let [u, v] = self.means[i].map(|x| x.round() as i64);
         let cost = |value: [i64; 2]| {
             let errors = self.errors(i, parts, value);
@@ -215,7 +197,7 @@ impl<'a> Fixing<'a> {
         };
         let mut values: Vec<[i64; 2]> = (-REACH..=REACH)
             .flat_map(|x| (-REACH..=REACH).map(move |y| [u + x, v + y]))
-            .filter(|v| constraint.allows(v.map(|x| x as f64)))
+            .filter(|v| constraint.shortage(v.map(|x| x as f64)) == 0)
             .collect();
         values.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)).then(a.cmp(&b)));
         values.truncate(TRIED);

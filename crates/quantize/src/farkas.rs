@@ -1,23 +1,25 @@
-//! What blocks the way to the integers.
+//! Infeasibility cuts: what the integers have to satisfy for a layout to reach them.
 
-use super::conditional::Row;
-use super::gauss::{Gauss, Overflow, add_scaled};
-use super::isolines::{part, tied};
-use super::rounding::{Constraint, Room, along};
-use super::scene::{Carry, Connection, Scene};
+use crate::gauss::{Gauss, Overflow, add_scaled};
+use crate::isolines::{part, tied};
+use crate::linear::{Row, apply, apply_exactly};
+use crate::rounding::Rule;
+use crate::scene::{Carry, Scene};
 use num_complex::Complex64;
 use seamstress_mesh::{Face, FaceData, Halfedge, VertexData};
-use seamstress_parametrize::energy::{ProjectedHessian, SymmetricDirichlet};
-use seamstress_parametrize::energy::{Triangle, at_corner};
+use seamstress_parametrize::energy::{ProjectedHessian, SymmetricDirichlet, Triangle, at_corner};
 use seamstress_parametrize::quarter::turn;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Triangles with less than this share of the strongest force are not what blocks the way.
+/// Triangles with less than this share of the strongest force are not what blocks the path.
 const WEAK: f64 = 0.02;
-/// Clusters of more faces are no walls: there the whole layout is in tension.
+/// Clusters of more faces give no cut: there the whole layout is in tension.
 const MOST_FACES: usize = 5000;
-/// How much further along the forces of a wall other integers have to be, grid units where the strongest is one.
-const LEAST_WAY: f64 = 0.25;
+/// How much further along the forces of a cut other integers have to be, grid units where the strongest is one.
+const MINIMUM_GAIN: f64 = 0.25;
+/// The share of the distance from the integers that failed back to where the path ended.
+const WAY_BACK: f64 = 0.5;
 
 /// A cluster of collapsing triangles as the grid points and isolines around it feel it.
 ///
@@ -25,43 +27,38 @@ const LEAST_WAY: f64 = 0.25;
 /// the forces as multipliers, add up to a linear form in the coordinates of the grid points and in the levels of the
 /// isolines alone: these must move along the forces. It is a cut by Farkas' lemma, its multipliers found by a barrier.
 #[derive(Debug, Clone)]
-pub struct Wall {
+pub struct FarkasCut {
     /// What the coordinates of grid points and the levels of isolines are more than the first one, as exact forms in
     /// the coordinates of the space.
-    pub ways: Vec<Row>,
+    pub differences: Vec<Row>,
     /// The force on each of these, the strongest one.
-    pub forces: Vec<f64>,
+    pub forces: Arc<[f64]>,
+    /// A face of the cluster.
+    pub face: Face,
 }
 
-impl Wall {
-    /// What keeps a rounding beyond the wall: from integers `x` that led to it, with the coordinates `here` of the
-    /// layout at the wall and grid size `h`, both in the layout's units.
-    ///
-    /// The condition is one half-space. Its ways are told apart so that the rounding can fix them one by one, after the
-    /// connections shorter than a cell: with the half-space alone, which nothing heeds before it is determined, fewer
-    /// roundings succeeded.
-    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> (Vec<Constraint>, Room) {
-        let way = |row: &Row| {
-            // It may vanish.
-            let rows = [row.clone(), Row::new()];
-            Constraint::new(&Connection { length: 0.0, rows, least: 0 }, here, h)
+impl FarkasCut {
+    /// What keeps a rounding away from integers `x` that led to the cut, with the coordinates `here` of the layout
+    /// where the path ended and cells of size `h`, both in the layout's units.
+    pub fn beyond(&self, x: &[i64], here: &[f64], h: f64) -> Rule {
+        let along = |value: &dyn Fn(&Row) -> f64| -> f64 {
+            self.differences.iter().zip(self.forces.iter()).map(|(row, f)| f * value(row)).sum()
         };
-        let ways: Vec<Constraint> = self.ways.iter().map(way).collect();
-        let at_x = along(&self.forces, ways.iter().map(|way| way.at(x)));
-        let at_here = along(&self.forces, ways.iter().map(|way| way.start));
-        let more_than = at_x + (0.5 * (at_here - at_x)).max(LEAST_WAY);
-        (ways, Room::Wall { forces: self.forces.clone(), more_than })
+        let at_x = along(&|row| apply_exactly(row, x) as f64);
+        let at_here = along(&|row| apply(row, here) / h);
+        let bound = at_x + (WAY_BACK * (at_here - at_x)).max(MINIMUM_GAIN);
+        Rule::Beyond { forces: self.forces.clone(), bound }
     }
 }
 
 /// A face of a cluster and how it is reached from the first one.
 type Reached = (Face, Carry);
 
-/// The walls around clusters of collapsing triangles.
+/// The cuts of all clusters of collapsing triangles.
 ///
 /// # Errors
 /// [`Overflow`].
-pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Overflow> {
+pub fn farkas_cuts(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<FarkasCut>, Overflow> {
     let forces: Vec<[Complex64; 3]> = triangles.iter().map(|t| forces(t, scene.z)).collect();
     let strength: Vec<f64> =
         forces.iter().map(|p| p.iter().map(|f| f.norm()).fold(0.0, f64::max)).collect();
@@ -75,7 +72,7 @@ pub fn walls(scene: &Scene<'_>, triangles: &[Triangle]) -> Result<Vec<Wall>, Ove
         if open.faces[f] {
             let cluster = cluster(scene, f, &mut open)?;
             if cluster.len() <= MOST_FACES {
-                found.extend(wall(scene, &cluster, &forces)?);
+                found.extend(cut(scene, &cluster, &forces)?);
             }
         }
     }
@@ -146,11 +143,11 @@ fn faces_around(
 }
 
 /// What a cluster asks of the grid points and isolines at its corners, if there are any.
-fn wall(
+fn cut(
     scene: &Scene<'_>,
     cluster: &[Reached],
     forces: &[[Complex64; 3]],
-) -> Result<Option<Wall>, Overflow> {
+) -> Result<Option<FarkasCut>, Overflow> {
     // Levels of both coordinates and the forces on them, in the plane of the first face.
     let mut felt = [Vec::new(), Vec::new()];
     for (f, Carry { turns, form: carried }) in cluster {
@@ -166,26 +163,27 @@ fn wall(
             }
         }
     }
-    // The forces add up to zero: only ways from the first one count. Several corners may be at the end of one.
-    let mut ways: BTreeMap<Row, f64> = BTreeMap::new();
+    // The forces add up to zero: only differences from the first one count. Several corners may share one.
+    let mut sums: BTreeMap<Row, f64> = BTreeMap::new();
     for felt in felt {
         for (level, force) in &felt {
-            let mut way = level.clone();
-            add_scaled(&mut way, &felt[0].0, Gauss::ONE.negated())?;
-            *ways.entry(scene.space.row(&way)?).or_default() += force;
+            let mut difference = level.clone();
+            add_scaled(&mut difference, &felt[0].0, Gauss::ONE.negated())?;
+            *sums.entry(scene.space.row(&difference)?).or_default() += force;
         }
     }
-    ways.retain(|row, _| !row.is_empty());
-    let strongest = ways.values().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let (ways, forces) = ways.into_iter().map(|(row, force)| (row, force / strongest)).unzip();
-    Ok((strongest > 0.0).then_some(Wall { ways, forces }))
+    sums.retain(|row, _| !row.is_empty());
+    let strongest = sums.values().fold(0.0, |most: f64, force| most.max(force.abs()));
+    let (differences, forces): (_, Vec<f64>) =
+        sums.into_iter().map(|(row, force)| (row, force / strongest)).unzip();
+    let face = cluster[0].0;
+    Ok((strongest > 0.0).then_some(FarkasCut { differences, forces: forces.into(), face }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conditional::apply;
-    use crate::rounding::Span;
+    use crate::rounding::Constraint;
     use crate::space::{GridNeeds, IntegerSpace};
     use seamstress_mesh::{HalfedgeData, Metric, TriMesh, Vertex};
     use seamstress_parametrize::cut::{Cut, connect_cones};
@@ -233,28 +231,29 @@ mod tests {
             z
         }
 
-        /// The only wall of that layout.
-        fn wall(&self, height: f64) -> Wall {
+        /// The only cut of that layout.
+        fn cut_of(&self, height: f64) -> FarkasCut {
             let Self { mesh, metric, cut, matching, needs, space } = self;
             let z = self.layout(height);
             let scene = Scene { mesh, cut, matching, needs, space, z: &z };
-            let mut walls = walls(&scene, &triangles(mesh, metric, cut)).unwrap();
-            assert_eq!(walls.len(), 1);
-            walls.remove(0)
+            let mut cuts = farkas_cuts(&scene, &triangles(mesh, metric, cut)).unwrap();
+            assert_eq!(cuts.len(), 1);
+            cuts.remove(0)
         }
 
         /// The forces on the second and on the third vertex against the first.
         fn forces(&self, height: f64) -> [[f64; 2]; 2] {
-            let wall = self.wall(height);
+            let cut = self.cut_of(height);
             let coordinates = self.space.read(&self.layout(height)).0;
             // Abscissae of 4 and 1; ordinates of 0 and three heights.
             [[4.0, 0.0], [1.0, 3.0 * height]].map(|place| {
                 place.map(|x| {
                     let is_there = |row: &Row| (apply(row, &coordinates) - x).abs() < 1e-9;
-                    let found: Vec<usize> =
-                        (0..wall.ways.len()).filter(|&k| is_there(&wall.ways[k])).collect();
+                    let found: Vec<usize> = (0..cut.differences.len())
+                        .filter(|&k| is_there(&cut.differences[k]))
+                        .collect();
                     assert_eq!(found.len(), 1, "{x}");
-                    wall.forces[found[0]]
+                    cut.forces[found[0]]
                 })
             })
         }
@@ -278,10 +277,13 @@ mod tests {
     fn an_isoline_is_pushed_away_too() {
         // The tip is the only grid point; the side from the first vertex to the second is on an isoline.
         let case = Case::with(&[2], vec![(Halfedge(0), 1)]);
-        let Wall { ways, forces } = case.wall(0.01);
+        let FarkasCut { differences, forces, .. } = case.cut_of(0.01);
         let coordinates = case.space.read(&case.layout(0.01)).0;
-        let height = apply(&ways[0], &coordinates);
-        assert!(ways.len() == 1 && (height * forces[0] - 0.03).abs() < 1e-9, "{ways:?} {forces:?}");
+        let height = apply(&differences[0], &coordinates);
+        assert!(
+            differences.len() == 1 && (height * forces[0] - 0.03).abs() < 1e-9,
+            "{differences:?} {forces:?}"
+        );
     }
 
     #[test]
@@ -292,9 +294,12 @@ mod tests {
             coordinates.iter().map(|x| x.round() as i64).collect()
         };
         let here = case.space.read(&case.layout(0.01)).0;
-        let (ways, room) = case.wall(0.01).beyond(&integers(0.0), &here, 1.0);
-        let span = Span { ways: 0..ways.len(), room };
-        let has_room = |x: &[i64]| span.has_room(|k| ways[k].at(x));
+        let cut = case.cut_of(0.01);
+        let rule = cut.beyond(&integers(0.0), &here, 1.0);
+        let members: Vec<Constraint> = cut.differences.into_iter().map(Constraint::free).collect();
+        let has_room = |x: &[i64]| {
+            rule.allows(members.iter().map(|member| Some(member.at(x).map(|d| d as f64))))
+        };
         assert!(!has_room(&integers(0.0)) && !has_room(&integers(-1.0)));
         // the tip a cell higher, then three
         assert!(has_room(&integers(1.0 / 3.0)) && has_room(&integers(1.0)));

@@ -1,16 +1,6 @@
 //! A quadratic energy under integer conditions that are added one by one.
 
-use super::reduced::{Dense, dot};
-use seamstress_linalg::NotPositiveDefinite;
-use seamstress_linalg::dense::invert_spd;
-
-/// An integer linear form: coordinate and coefficient.
-pub type Row = Vec<(usize, i64)>;
-
-/// The value of a row at a real point.
-pub fn apply(row: &Row, x: &[f64]) -> f64 {
-    row.iter().map(|&(k, c)| c as f64 * x[k]).sum()
-}
+use crate::linear::{Dense, Row, apply};
 
 /// A condition `row . x = value` in reduced echelon form: its pivot coefficient is 1 or -1 and occurs in no
 /// other condition.
@@ -49,21 +39,11 @@ pub struct Conditional {
     is_pivot: Vec<bool>,
 }
 
-/// Shift of the energy as a share of its mean diagonal, for directions that cost nothing.
-const SHIFT: f64 = 1e-12;
-
 impl Conditional {
-    /// Without conditions yet.
-    ///
-    /// # Errors
-    /// When the energy is not positive definite.
-    pub fn new(energy: &Dense, mean: Vec<f64>) -> Result<Self, NotPositiveDefinite> {
-        let n = energy.order;
-        let trace: f64 = (0..n).map(|k| energy.row(k)[k]).sum();
-        let mut shifted = energy.values.clone();
-        (0..n).for_each(|k| shifted[k * n + k] += SHIFT * trace / n as f64);
-        let covariance = Dense { order: n, values: invert_spd(&shifted, n)? };
-        Ok(Self { mean, covariance, conditions: Vec::new(), is_pivot: vec![false; n] })
+    /// Without conditions yet, for an energy of this inverse.
+    pub fn new(covariance: Dense, mean: Vec<f64>) -> Self {
+        let is_pivot = vec![false; covariance.order];
+        Self { mean, covariance, conditions: Vec::new(), is_pivot }
     }
 
     /// The minimiser under the conditions so far.
@@ -74,7 +54,7 @@ impl Conditional {
     /// Mean variance of a coordinate.
     pub fn mean_variance(&self) -> f64 {
         let n = self.covariance.order;
-        (0..n).map(|k| self.covariance.row(k)[k]).sum::<f64>() / n.max(1) as f64
+        self.covariance.trace() / n.max(1) as f64
     }
 
     /// What a condition on a row would do, perhaps after one more condition of the effect given.
@@ -159,10 +139,4 @@ impl Conditional {
 
 fn subtract(target: &mut [i64], factor: i64, row: &[i64]) {
     target.iter_mut().zip(row).for_each(|(t, r)| *t -= factor * r);
-}
-
-/// `(x - mean)' P (x - mean)`.
-pub fn energy(matrix: &Dense, mean: &[f64], x: &[i64]) -> f64 {
-    let d: Vec<f64> = x.iter().zip(mean).map(|(&x, m)| x as f64 - m).collect();
-    dot(&d, &matrix.multiply(&d))
 }

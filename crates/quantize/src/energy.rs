@@ -1,39 +1,13 @@
 //! The energy as a function of the integral coordinates alone.
 
-use super::space::IntegerSpace;
+use crate::linear::Dense;
+use crate::space::IntegerSpace;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 
 /// Right-hand sides that one pass over the factor serves.
 const COLUMNS: usize = 16;
-
-/// A dense symmetric matrix, row after row.
-#[derive(Debug, Clone)]
-pub struct Dense {
-    /// Number of rows.
-    pub order: usize,
-    /// The entries.
-    pub values: Vec<f64>,
-}
-
-impl Dense {
-    /// A row.
-    #[inline]
-    pub fn row(&self, i: usize) -> &[f64] {
-        &self.values[i * self.order..(i + 1) * self.order]
-    }
-
-    /// Product with a vector.
-    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        (0..self.order).map(|i| dot(self.row(i), x)).collect()
-    }
-}
-
-/// Inner product.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
 
 /// Couplings of the last assembled matrix that touch a held unknown, as (row, column, value) with the
 /// row held.

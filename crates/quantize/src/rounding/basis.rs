@@ -1,7 +1,6 @@
 //! Integer steps that cost little.
 
-use super::conditional::Row;
-use super::reduced::{Dense, dot};
+use crate::linear::{Dense, Row, dot};
 
 /// A basis of the integer vectors, reduced in pairs: no vector gets shorter by taking multiples of another one
 /// from it, in the energy with a weight on turning the whole map.
@@ -10,7 +9,7 @@ use super::reduced::{Dense, dot};
 /// such steps as vectors of their own. Turning costs no energy, and long integer vectors come close to it:
 /// the weight keeps them out.
 #[derive(Debug, Clone)]
-pub struct Moves {
+pub struct ReducedBasis {
     /// Coordinate and step.
     pub vectors: Vec<Row>,
     /// The energy on multiples of the vectors.
@@ -24,10 +23,10 @@ const MOST_SWEEPS: usize = 50;
 /// A fall of the energy that counts, as a share.
 const GAIN: f64 = 1e-9;
 
-impl Moves {
+impl ReducedBasis {
     /// Reduces the unit vectors in an energy `x' P x`, given what turning the map does to the coordinates, up
     /// to a factor; zero where it cannot be turned.
-    pub fn reduced(energy: &Dense, turning: &[f64]) -> Self {
+    pub fn new(energy: &Dense, turning: &[f64]) -> Self {
         let n = energy.order;
         let mut matrix = energy.clone();
         let mut weighted = with_weight(energy, turning);
@@ -63,7 +62,7 @@ impl Moves {
 /// The energy with a weight on steps along a direction.
 fn with_weight(energy: &Dense, direction: &[f64]) -> Dense {
     let n = energy.order;
-    let trace: f64 = (0..n).map(|k| energy.row(k)[k]).sum();
+    let trace = energy.trace();
     let square = dot(direction, direction);
     let mut weighted = energy.clone();
     if square > 0.0 {
@@ -93,8 +92,8 @@ impl Dense {
 
 #[cfg(test)]
 mod tests {
-    use super::super::conditional::apply;
     use super::*;
+    use crate::linear::apply;
     use seamstress_testkit::Rng;
 
     /// A positive definite matrix in a basis far from reduced.
@@ -119,7 +118,7 @@ mod tests {
         for seed in 0..20 {
             let energy = skewed(7, seed);
             let weighted = with_weight(&energy, &turning);
-            let Moves { vectors, matrix } = Moves::reduced(&energy, &turning);
+            let ReducedBasis { vectors, matrix } = ReducedBasis::new(&energy, &turning);
             let dense = |row: &Row| {
                 let mut x = vec![0.0; 7];
                 row.iter().for_each(|&(k, c)| x[k] = c as f64);
@@ -142,7 +141,7 @@ mod tests {
     #[test]
     fn they_are_a_basis() {
         for seed in 0..20 {
-            let vectors = Moves::reduced(&skewed(5, seed), &[0.0; 5]).vectors;
+            let vectors = ReducedBasis::new(&skewed(5, seed), &[0.0; 5]).vectors;
             let mut rows = vec![vec![0i64; 5]; 5];
             for (row, vector) in rows.iter_mut().zip(&vectors) {
                 vector.iter().for_each(|&(k, c)| row[k] = c);
@@ -157,7 +156,7 @@ mod tests {
         let across = [1.0, -1.618_033_988_749_895];
         let turning = [-across[1], across[0]];
         let values = (0..4).map(|k| across[k / 2] * across[k % 2]).collect();
-        let Moves { vectors, .. } = Moves::reduced(&Dense { order: 2, values }, &turning);
+        let ReducedBasis { vectors, .. } = ReducedBasis::new(&Dense { order: 2, values }, &turning);
         assert!(vectors.iter().flatten().all(|&(_, c)| c.abs() <= 2), "{vectors:?}");
     }
 

@@ -1,0 +1,157 @@
+//! Why there is no integer-grid map.
+
+use crate::gauss::Overflow;
+use seamstress_linalg::NotPositiveDefinite;
+use seamstress_mesh::{Component, Vertex};
+use seamstress_parametrize::map::Violations;
+use seamstress_parametrize::progress::Cancelled;
+
+/// Pairs of vertices that a message lists.
+const LISTED: usize = 5;
+
+/// Why there is no integer-grid map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuantizeError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The size of the grid is not a positive number.
+    #[error("the size of the grid is not a positive number")]
+    BadSize,
+    /// Positions or UVs do not fit the mesh.
+    #[error(
+        "{positions} positions and {corners} corners of UVs for a mesh of {vertices} vertices and {faces} faces"
+    )]
+    Mismatch {
+        /// Positions given.
+        positions: usize,
+        /// UVs given.
+        corners: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+        /// Faces of the mesh.
+        faces: usize,
+    },
+    /// A component has no integer-grid map on this grid, nor on finer ones.
+    #[error("component {component} (with face {face}): {cause}")]
+    Component {
+        /// The component, in order of first faces.
+        component: usize,
+        /// Its first face.
+        face: u32,
+        /// What failed.
+        #[source]
+        cause: QuantizationFailure,
+    },
+    /// The edges given are not aligned in the map.
+    #[error("the map is not aligned: {0}")]
+    Misaligned(#[source] Violations),
+    /// The result did not pass the certificate. Nothing is returned then.
+    #[error("the integer-grid map failed its certificate: {0}")]
+    Uncertified(#[from] Violations),
+}
+
+/// Why a component has no integer-grid map; elements are those of the whole mesh.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuantizationFailure {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The relations of the seams do not fit into 64-bit integers.
+    #[error(transparent)]
+    Overflow(#[from] Overflow),
+    /// A linear system could not be solved.
+    #[error(transparent)]
+    Numeric(#[from] NotPositiveDefinite),
+    /// The given map flips when its seams are closed exactly.
+    #[error(
+        "the map has triangles too thin to close its seams exactly; collapse them, or make another map"
+    )]
+    Unreadable,
+    /// Lines between cones, corners or isolines would vanish or turn around, or two edges of quads would join the same
+    /// points.
+    #[error(
+        "the grid is too coarse: {count} pairs of cones or feature lines would merge or swap{}; ask for more quads",
+        listed(.pairs)
+    )]
+    TooCoarse {
+        /// How many.
+        count: usize,
+        /// The vertices at the ends of such lines.
+        pairs: Vec<[u32; 2]>,
+    },
+    /// Triangles would collapse while the layout moves to the integers.
+    #[error(
+        "the layout cannot be moved to the rounded positions without collapsing triangles near face {face} \
+         (stopped at {:.0} %); ask for more quads",
+        100.0 * .reached
+    )]
+    Blocked {
+        /// A face among those that collapse.
+        face: u32,
+        /// Share of the distance that could be gone.
+        reached: f64,
+    },
+    /// The caller refused the map of every grid tried.
+    #[error("no grid gave an acceptable map; ask for more quads")]
+    Refused,
+    /// The result fails its certificate.
+    #[error(transparent)]
+    Uncertified(#[from] Violations),
+}
+
+impl QuantizationFailure {
+    /// With the elements of the whole mesh in place of those of a piece of it.
+    pub(crate) fn in_whole(self, piece: &Component) -> Self {
+        match self {
+            Self::TooCoarse { count, pairs } => {
+                let whole = |pair: [u32; 2]| pair.map(|v| piece.vertices[Vertex(v)].0);
+                Self::TooCoarse { count, pairs: pairs.into_iter().map(whole).collect() }
+            }
+            Self::Blocked { face, reached } => {
+                Self::Blocked { face: piece.faces[face as usize].0, reached }
+            }
+            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(piece)),
+            other => other,
+        }
+    }
+
+    /// Whether another grid may help.
+    pub(crate) fn is_of_grid(&self) -> bool {
+        matches!(
+            self,
+            Self::TooCoarse { .. } | Self::Blocked { .. } | Self::Refused | Self::Uncertified(_)
+        )
+    }
+}
+
+/// The first pairs of vertices, in words.
+fn listed(pairs: &[[u32; 2]]) -> String {
+    let shown: Vec<String> =
+        pairs.iter().take(LISTED).map(|[a, b]| format!("{a} and {b}")).collect();
+    match pairs.len() {
+        0 => String::new(),
+        n if n > LISTED => format!(" (vertices {}, ...)", shown.join(", ")),
+        _ => format!(" (vertices {})", shown.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_elements_and_what_helps() {
+        let pairs = vec![[3, 17], [3, 3]];
+        let text = QuantizationFailure::TooCoarse { count: 2, pairs }.to_string();
+        assert_eq!(
+            text,
+            "the grid is too coarse: 2 pairs of cones or feature lines would merge or swap (vertices 3 and 17, \
+             3 and 3); ask for more quads"
+        );
+        let text = QuantizationFailure::Blocked { face: 8, reached: 0.374 }.to_string();
+        assert!(text.contains("near face 8 (stopped at 37 %)"), "{text}");
+    }
+}

@@ -1,0 +1,200 @@
+//! A seamless map of one connected mesh, read as a layout in the exact space.
+
+use crate::energy::{couple, schur_complement};
+use crate::error::QuantizationFailure;
+use crate::gauss::{Gauss, Overflow};
+use crate::isolines::turning_points;
+use crate::path::SHIFT;
+use crate::rounding::ReducedEnergy;
+use crate::scene::Scene;
+use crate::snap::snap;
+use crate::space::{GridNeeds, IntegerSpace};
+use num_complex::Complex64;
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_parametrize::cut::Cut;
+use seamstress_parametrize::energy::{SymmetricDirichlet, triangles};
+use seamstress_parametrize::layout::exact::ExactLayout;
+use seamstress_parametrize::layout::problem::LayoutProblem;
+use seamstress_parametrize::map::SeamlessMap;
+
+/// A seamless map in the exact space of integer-grid maps, its coordinates not integral as yet.
+pub(crate) struct SeamlessLayout<'a> {
+    pub(crate) mesh: &'a TriMesh,
+    /// The ends of the aligned edges.
+    pub(crate) aligned: Vec<[u32; 2]>,
+    /// The triangles over the space, prepared for solves.
+    pub(crate) problem: LayoutProblem,
+    pub(crate) space: IntegerSpace,
+    /// The unknowns, in mean edge lengths.
+    pub(crate) y: Vec<f64>,
+    /// The integral coordinates.
+    pub(crate) coordinates: Vec<f64>,
+    /// Mesh length of a mean edge.
+    pub(crate) unit: f64,
+    cut: Cut,
+    matching: HalfedgeData<i32>,
+    needs: GridNeeds,
+}
+
+impl<'a> SeamlessLayout<'a> {
+    /// Reads a seamless map of a connected mesh with its aligned edges.
+    ///
+    /// # Errors
+    /// [`QuantizationFailure::Unreadable`] if the map flips when its seams are closed exactly.
+    pub(crate) fn new(
+        mesh: &'a TriMesh,
+        metric: &Metric,
+        map: &SeamlessMap,
+        aligned: &EdgeSet,
+    ) -> Result<Self, QuantizationFailure> {
+        let (layout, mut y) = ExactLayout::from_map(mesh, metric, map)?;
+        layout.rescale(&mut y);
+        let z = layout.expand(&y);
+        let ExactLayout { cut, matching, index, .. } = layout;
+        let needs = grid_needs(mesh, &index, aligned, |h| z[cut.wedge[h] as usize]);
+        let space = IntegerSpace::new(mesh, &cut, &matching, &needs)?;
+        let (coordinates, y) = space.read(&z);
+        let triangles = triangles(mesh, metric, &cut);
+        let problem = LayoutProblem::with_held(space.linear()?, triangles, space.n_free())?;
+        let aligned = aligned.vertex_pairs(mesh);
+        let unit = metric.unit;
+        let this =
+            Self { mesh, aligned, problem, space, y, coordinates, unit, cut, matching, needs };
+        match this.problem.value(&SymmetricDirichlet, &this.z()).is_finite() {
+            true => Ok(this),
+            false => Err(QuantizationFailure::Unreadable),
+        }
+    }
+
+    /// The layout with the size of the map itself, where the metric's is of no use; UVs in mesh units.
+    pub(crate) fn with_size_of(mut self, map: &SeamlessMap) -> Self {
+        let doubled = |uvs: &[[f64; 2]]| {
+            let [a, b, c] = [uvs[0], uvs[1], uvs[2]].map(|[u, v]| Complex64::new(u, v) / self.unit);
+            ((b - a).conj() * (c - a)).im
+        };
+        let area = 0.5 * map.corner_uvs().chunks_exact(3).map(doubled).sum::<f64>();
+        self.unit *= area.sqrt() * self.unit / self.side();
+        self
+    }
+
+    /// Side of a square with the area of the layout, mesh units.
+    pub(crate) fn side(&self) -> f64 {
+        let z = self.z();
+        let doubled = self.problem.triangles().iter().map(|t| t.doubled_area(&z));
+        (0.5 * doubled.sum::<f64>()).sqrt() * self.unit
+    }
+
+    /// Positions of the wedges.
+    pub(crate) fn z(&self) -> Vec<Complex64> {
+        self.problem.space().expand(&self.y)
+    }
+
+    /// A layout in the same space.
+    pub(crate) fn scene<'s>(&'s self, z: &'s [Complex64]) -> Scene<'s> {
+        let (mesh, cut, matching) = (self.mesh, &self.cut, &self.matching);
+        Scene { mesh, cut, matching, needs: &self.needs, space: &self.space, z }
+    }
+
+    /// The symmetric Dirichlet energy around the layout as a function of the coordinates.
+    ///
+    /// # Errors
+    /// When a linear system cannot be solved.
+    pub(crate) fn reduced_energy(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+        let z = self.z();
+        self.problem.linearize(&SymmetricDirichlet, &z);
+        self.reduce()
+    }
+
+    /// The energy that preserves Jacobians as a function of the coordinates; it stays factored.
+    ///
+    /// # Errors
+    /// When a linear system cannot be solved.
+    pub(crate) fn reduced_dirichlet(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+        self.problem.assemble_dirichlet();
+        self.reduce()
+    }
+
+    fn reduce(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+        self.problem.factorize(SHIFT)?;
+        let matrix = schur_complement(&self.problem, &self.space)?;
+        let turning = match self.aligned.is_empty() {
+            true => turned(&self.coordinates),
+            false => vec![0.0; self.coordinates.len()],
+        };
+        Ok(ReducedEnergy::new(&matrix, &turning)?)
+    }
+
+    /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
+    /// quadratic one, is minimised.
+    pub(crate) fn follow(&mut self, target: &[f64]) -> Vec<f64> {
+        let held = self.problem.n_free();
+        let way: Vec<f64> = target.iter().zip(&self.y[held..]).map(|(t, y)| t - y).collect();
+        let mut step = couple(&self.problem, &way);
+        step.resize(self.y.len(), 0.0);
+        self.problem.solve(&mut step);
+        let mut y: Vec<f64> = self.y.iter().zip(&step).map(|(y, s)| y - s).collect();
+        y[held..].copy_from_slice(target);
+        y
+    }
+
+    /// Exact corner UVs in grid units, for held unknowns that are integers and cells of size `h` in the layout's
+    /// units, their box beginning at a column and at row 0; and its width.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub(crate) fn corner_uvs(
+        &self,
+        held: &[i64],
+        y: &[f64],
+        h: f64,
+        column: i64,
+    ) -> Result<(Vec<[f64; 2]>, i64), Overflow> {
+        let free: Vec<f64> = y[..self.problem.n_free()].iter().map(|x| x / h).collect();
+        let z = self.problem.space().expand(y);
+        let bound = |start: f64, pick: fn(f64, f64) -> f64, part: fn(&Complex64) -> f64| {
+            z.iter().map(part).fold(start, pick) / h
+        };
+        let (re, im) = (|z: &Complex64| z.re, |z: &Complex64| z.im);
+        let [left, bottom] =
+            [re, im].map(|part| bound(f64::INFINITY, f64::min, part).floor() as i64);
+        let right = bound(f64::NEG_INFINITY, f64::max, re).ceil() as i64;
+        let shift = Gauss { re: column, im: 0 }.plus(Gauss { re: left, im: bottom }.negated())?;
+        let z = snap(&self.space, held, &free, shift)?;
+        let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
+        Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
+    }
+}
+
+/// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.
+///
+/// There is always a grid point where translations are free, so that lines that close up, around a torus or between
+/// two boundaries, begin and end at one.
+fn grid_needs(
+    mesh: &TriMesh,
+    index: &VertexData<i32>,
+    aligned: &EdgeSet,
+    position: impl Fn(Halfedge) -> Complex64,
+) -> GridNeeds {
+    let mut needs = GridNeeds::cones(index.iter().map(|&k| k != 0).collect());
+    let turns = turning_points(mesh, aligned, &position);
+    mesh.vertices().filter(|&v| turns[v]).for_each(|v| needs.is_point[v] = true);
+    if !needs.is_point.iter().any(|&is_point| is_point) {
+        let on_isoline = aligned.edges().first().map(|&h| mesh.origin(h));
+        let anywhere = (!mesh.has_boundary()).then_some(Vertex(0));
+        on_isoline.or(anywhere).into_iter().for_each(|v| needs.is_point[v] = true);
+    }
+    let sides = mesh.halfedges().filter(|&h| aligned.contains(h));
+    needs.levels = sides
+        .map(|h| {
+            let way = position(h.next()) - position(h);
+            (h, u32::from(way.re.abs() > way.im.abs()))
+        })
+        .collect();
+    needs
+}
+
+/// Real and imaginary parts by turns, turned by a quarter.
+fn turned(parts: &[f64]) -> Vec<f64> {
+    parts.chunks(2).flat_map(|z| [-z[1], z[0]]).collect()
+}

@@ -1,0 +1,74 @@
+//! What the rounding of one layout has to keep, with what the search has learned about it.
+
+use crate::connections::connections;
+use crate::faces::{PointFace, point_faces};
+use crate::farkas::FarkasCut;
+use crate::gauss::Overflow;
+use crate::layout::SeamlessLayout;
+use crate::rays::lines_to_isolines;
+use crate::rounding::{Constraint, ReducedEnergy, RoundingProblem, Rule};
+use crate::scene::{Connection, distinct};
+
+/// Lines shorter than this in the seamless map are constrained, grid units.
+const CONSTRAINED_LENGTH: f64 = 2.5;
+
+/// Conditions on the integers of a layout, on any grid. What is learned stays when the grid changes.
+#[derive(Default)]
+pub(crate) struct Obstacles {
+    /// The radius up to which lines are known, and these lines; in the layout's units.
+    near: (f64, Vec<Connection>),
+    /// Faces of the mesh whose corners are grid points.
+    faces: Vec<PointFace>,
+    /// Infeasibility cuts.
+    cuts: Vec<(FarkasCut, Rule)>,
+}
+
+impl Obstacles {
+    /// Nothing but what is known of a layout before any rounding.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub(crate) fn new(layout: &SeamlessLayout<'_>) -> Result<Self, Overflow> {
+        let z = layout.z();
+        Ok(Self { faces: point_faces(&layout.scene(&z))?, ..Self::default() })
+    }
+
+    /// Adds cuts with the conditions that they impose.
+    pub(crate) fn learn(&mut self, cuts: impl IntoIterator<Item = (FarkasCut, Rule)>) {
+        self.cuts.extend(cuts);
+    }
+
+    /// The rounding problem of a layout for cells of size `h`, in its units.
+    ///
+    /// # Errors
+    /// [`Overflow`].
+    pub(crate) fn problem<'a>(
+        &mut self,
+        layout: &SeamlessLayout<'_>,
+        energy: &'a ReducedEnergy,
+        h: f64,
+    ) -> Result<RoundingProblem<'a>, Overflow> {
+        let radius = CONSTRAINED_LENGTH * h;
+        if radius > self.near.0 {
+            let z = layout.z();
+            let scene = layout.scene(&z);
+            let mut lines = connections(&scene, radius)?;
+            lines.extend(lines_to_isolines(&scene, radius)?);
+            self.near = (radius, distinct(lines));
+        }
+        let from = &layout.coordinates;
+        let short = self.near.1.iter().filter(|line| line.length < radius);
+        let constraints = short.map(|line| Constraint::new(line, from, h)).collect();
+        let mean = from.iter().map(|x| x / h).collect();
+        let mut problem = RoundingProblem { energy, mean, constraints, joint: Vec::new() };
+        for face in self.faces.iter().filter(|face| face.extent < radius) {
+            let sides = face.sides.iter().map(|side| Constraint::new(side, from, h));
+            problem.add(sides, Rule::Oriented);
+        }
+        for (cut, rule) in &self.cuts {
+            let parts = cut.differences.iter().cloned().map(Constraint::free);
+            problem.add(parts, rule.clone());
+        }
+        Ok(problem)
+    }
+}

@@ -1,0 +1,225 @@
+//! From a seamless map to an integer-grid map: the grid, and all components on it.
+
+use crate::certificate::IntegerGridMap;
+use crate::error::{QuantizationFailure, QuantizeError};
+use crate::options::{GridSize, QuantizeOptions};
+use crate::search::{Acceptance, ComponentSearch, Placement};
+use crate::stats::QuantizationStats;
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Component, Face, Metric, TriMesh, components};
+use seamstress_parametrize::map::{Alignment, AlignmentTolerance, SeamlessMap};
+use seamstress_parametrize::progress::{Observer, Stage, Watch};
+use seamstress_parametrize::quality::{Distortion, distortion};
+
+/// The number of quads asked for is met when it is this close.
+const CLOSE_ENOUGH: f64 = 0.02;
+/// Cell sizes tried to meet it.
+const MOST_SIZES: usize = 4;
+/// A number further off is worth up to as many sizes again, while they get better.
+const FAR_OFF: f64 = 0.05;
+/// Cells of a size that is no better are followed by ones on the other side of the best, nearer by this power.
+const NEARER: f64 = 0.7;
+/// Most that a cell is lengthened or shortened by at once: where cones are dense, the count hardly follows the size.
+const LARGEST_CHANGE: f64 = 1.2;
+
+/// A certified integer-grid map and how it was made.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Quantization {
+    /// The map; UVs in grid units.
+    pub map: IntegerGridMap,
+    /// Its distortion, against the mesh.
+    pub distortion: Distortion,
+    /// Distortion of the seamless map it comes from.
+    pub before: Distortion,
+    /// Cell size, mesh units, before any component needed a finer one.
+    pub cell: f64,
+    /// Cell sizes tried to meet a number of quads.
+    pub sizes_tried: usize,
+    /// One entry per connected component, in order of first faces.
+    pub components: Vec<QuantizationStats>,
+}
+
+impl Quantization {
+    /// Area in the plane, grid units: the number of quads of a closed mesh.
+    pub fn quads(&self) -> f64 {
+        self.map.certificate().area
+    }
+
+    /// Finer grids that were needed, over all components.
+    pub fn refinements(&self) -> usize {
+        self.components.iter().map(|c| c.refinements).sum()
+    }
+}
+
+/// Makes an integer-grid map that is close to a seamless map and takes its aligned edges to isolines at integers, so
+/// that the quads of its grid follow them.
+///
+/// Positions are in any unit. Where cones are too close for the grid, a component gets a finer one; the
+/// solution says so. A number of quads is met within a few percent if no component needed that.
+/// The observer is called in every iteration of every long loop and may break to cancel.
+///
+/// # Errors
+/// [`QuantizeError`], also when an edge is not aligned in the map; never an uncertified map.
+///
+/// # Source
+/// Levi 2021, suppl. sec. 8, for what must be integral and for [`crate::RoundingMethod::Greedy`];
+/// the constrained rounding is that of `docs/theory/08-integer-grid-maps.md`.
+pub fn quantize(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    map: &SeamlessMap,
+    aligned: &EdgeSet,
+    options: &QuantizeOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Quantization, QuantizeError> {
+    quantize_accepting(mesh, positions, map, aligned, options, &mut |_, _| true, observer)
+}
+
+/// As [`quantize`], of maps that a caller accepts component by component.
+///
+/// # Errors
+/// As [`quantize`]; [`QuantizationFailure::Refused`] if no map of a component was accepted.
+pub fn quantize_accepting(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    map: &SeamlessMap,
+    aligned: &EdgeSet,
+    options: &QuantizeOptions,
+    accept: &mut Acceptance<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Quantization, QuantizeError> {
+    let (corners, vertices, faces) = (map.corner_uvs().len(), mesh.n_vertices(), mesh.n_faces());
+    if positions.len() != vertices || corners != 3 * faces {
+        let positions = positions.len();
+        return Err(QuantizeError::Mismatch { positions, corners, vertices, faces });
+    }
+    let size = options.size.value();
+    if !(size.is_finite() && size > 0.0) {
+        return Err(QuantizeError::BadSize);
+    }
+    let pairs = aligned.vertex_pairs(mesh);
+    Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default())
+        .map_err(QuantizeError::Misaligned)?;
+    let pieces = components::components(mesh).unwrap_or_default();
+    let mut all = Components { pieces: &pieces, searches: Vec::new(), accept, observer };
+    for k in 0..pieces.len() {
+        all.read(k, positions, map, aligned, options)?;
+    }
+    let Sized { cell, placements, tried, .. } = all.meet(options.size)?;
+    let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
+    let mut stats = Vec::with_capacity(pieces.len());
+    for ((piece, search), placement) in pieces.iter().zip(&all.searches).zip(placements) {
+        for (corners, &Face(f)) in placement.corner_uvs.chunks_exact(3).zip(&piece.faces) {
+            corner_uvs[3 * f as usize..3 * f as usize + 3].copy_from_slice(corners);
+        }
+        stats.push(search.stats(placement));
+    }
+    let metric = Metric::from_positions(mesh, positions);
+    let before = distortion(mesh, &metric, map.corner_uvs());
+    let after = distortion(mesh, &metric, &corner_uvs);
+    let map = IntegerGridMap::certify_aligned(mesh, corner_uvs, &pairs, &options.tolerance)?;
+    let (distortion, sizes_tried, components) = (after, tried, stats);
+    Ok(Quantization { map, distortion, before, cell, sizes_tried, components })
+}
+
+/// All components on cells of one size.
+struct Sized {
+    cell: f64,
+    placements: Vec<Placement>,
+    /// How far the number of quads is off, as a share.
+    off: f64,
+    /// Sizes tried.
+    tried: usize,
+}
+
+/// All components of a mesh.
+struct Components<'p, 'a, 'b> {
+    pieces: &'p [Component],
+    searches: Vec<ComponentSearch<'p>>,
+    accept: &'a mut Acceptance<'a>,
+    observer: &'a mut Observer<'b>,
+}
+
+impl<'p> Components<'p, '_, '_> {
+    fn error(&self, k: usize, cause: QuantizationFailure) -> QuantizeError {
+        match cause.in_whole(&self.pieces[k]) {
+            QuantizationFailure::Cancelled(cancelled) => QuantizeError::Cancelled(cancelled),
+            QuantizationFailure::Uncertified(violations) => QuantizeError::Uncertified(violations),
+            cause => {
+                QuantizeError::Component { component: k, face: self.pieces[k].faces[0].0, cause }
+            }
+        }
+    }
+
+    /// Reads a component.
+    fn read(
+        &mut self,
+        k: usize,
+        positions: &[[f64; 3]],
+        map: &SeamlessMap,
+        aligned: &EdgeSet,
+        options: &'p QuantizeOptions,
+    ) -> Result<(), QuantizeError> {
+        Watch::new(self.observer, k, self.pieces.len()).enter(Stage::Integers)?;
+        let piece = &self.pieces[k];
+        let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        let metric = Metric::from_positions(&piece.mesh, &positions);
+        let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
+        let map = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
+            .map_err(|cause| self.error(k, cause.into()))?;
+        let search = ComponentSearch::new(piece, &metric, &map, &aligned.restrict(piece), options);
+        self.searches.push(search.map_err(|cause| self.error(k, cause))?);
+        Ok(())
+    }
+
+    /// Meets the size asked for: a number of quads by changing the size of the cells by what it is off; where that was
+    /// no better, on the other side of the best size, since where cones are dense the number does not always fall when
+    /// cells grow.
+    fn meet(&mut self, size: GridSize) -> Result<Sized, QuantizeError> {
+        let side = self.searches.iter().map(ComponentSearch::side).fold(0.0, f64::hypot);
+        let mut cell = size.cell(side);
+        let mut best: Option<Sized> = None;
+        for tried in 1..=2 * MOST_SIZES {
+            let placements = self.place(cell)?;
+            let quads: f64 = placements.iter().map(|p| p.quads).sum();
+            let ratio = match size {
+                GridSize::Quads(asked) => quads / asked,
+                GridSize::EdgeLength(_) | GridSize::Scale(_) => 1.0,
+            };
+            let off = (ratio - 1.0).abs();
+            let is_better = best.as_ref().is_none_or(|best| off < best.off);
+            if is_better {
+                best = Some(Sized { cell, placements, off, tried });
+            }
+            if let Some(best) = &mut best {
+                best.tried = tried;
+                let is_worth_more = tried < MOST_SIZES || (is_better && off > FAR_OFF);
+                if off < CLOSE_ENOUGH || !is_worth_more {
+                    break;
+                }
+                cell = match is_better {
+                    true => cell * ratio.sqrt().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE),
+                    false => best.cell * (best.cell / cell).powf(NEARER),
+                };
+            }
+        }
+        best.ok_or(QuantizeError::BadSize)
+    }
+
+    /// All components on cells of one size, side by side.
+    fn place(&mut self, cell: f64) -> Result<Vec<Placement>, QuantizeError> {
+        let mut column = 0;
+        let mut all = Vec::with_capacity(self.pieces.len());
+        for k in 0..self.pieces.len() {
+            let mut watch = Watch::new(self.observer, k, self.pieces.len());
+            watch.enter(Stage::Integers)?;
+            let placement = self.searches[k].place(cell, column, self.accept, &mut watch);
+            let placement = placement.map_err(|cause| self.error(k, cause))?;
+            // One empty column between components.
+            column += placement.columns + 1;
+            all.push(placement);
+        }
+        Ok(all)
+    }
+}
