@@ -255,7 +255,8 @@ mod tests {
             let longer = metric.lengthened(&mesh, by);
             // The unit has changed by the new mean length.
             assert!((slack(&longer) * (1.0 + by) - 0.01).abs() < 1e-2 * by, "{positions:?}");
-            assert!(longer.smallest_angle().0 > 0.01, "{positions:?}");
+            // A needle of two long sides opens by the slack over their length.
+            assert!(longer.smallest_angle().0 > 0.005, "{positions:?}");
         }
         let (mesh, positions) = square();
         let square = Metric::from_positions(&mesh, &positions);
