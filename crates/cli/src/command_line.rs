@@ -106,7 +106,7 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options that few users of `map`, `quad` and `integer` need.
-const RARE: [&str; 6] = ["cone_price", "scale", "angle", "shift", "period", "features_strict"];
+const RARE: [&str; 5] = ["cone_price", "scale", "angle", "shift", "period"];
 
 /// Parses the command line, or prints help or what is wrong with it and ends.
 pub(crate) fn parse() -> CommandLine {

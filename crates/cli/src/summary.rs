@@ -91,6 +91,9 @@ pub(crate) fn feature_rows(report: &FeatureReport) -> Vec<String> {
 
 /// What the certificate of alignment says.
 pub(crate) fn alignment_row(alignment: &Alignment) -> String {
+    if alignment.edges == 0 {
+        return row("alignment", "no edge is aligned");
+    }
     let text = format!(
         "passed: {} within {:.1e} degrees of an axis ({} of {} sides exact), {} of whole quarter \
          turns to {:.1e} rad",
