@@ -184,7 +184,7 @@ impl Surface {
     /// ones where the report says that they are optimal; its bound says how much nearer others may be.
     ///
     /// # Errors
-    /// [`ErrorKind::Inconsistent`] where there are none, [`ErrorKind::BadOptions`] if an edge is both constant and
+    /// [`ErrorKind::Inconsistent`] where there are none, [`ErrorKind::Options`] if an edge is both constant and
     /// real, and those of reading the files.
     ///
     /// # Source
