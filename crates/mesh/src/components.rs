@@ -14,6 +14,18 @@ pub struct Component {
     pub faces: Vec<Face>,
 }
 
+impl Component {
+    /// Those of the piece among the positions of the whole.
+    pub fn positions(&self, of_whole: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.vertices.iter().map(|v| of_whole[v.at()]).collect()
+    }
+
+    /// Those of the piece among the UVs of the whole, one per corner.
+    pub fn corner_uvs(&self, of_whole: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        self.faces.iter().flat_map(|f| f.halfedges().map(|h| of_whole[h.at()])).collect()
+    }
+}
+
 /// Splits a mesh into its connected pieces, in order of their first face.
 ///
 /// # Errors
@@ -57,5 +69,9 @@ mod tests {
         assert_eq!(pieces[0].faces, [Face(0), Face(2)]);
         assert_eq!(pieces[0].vertices.0, [4, 5, 6, 7].map(Vertex));
         assert_eq!(pieces[1].mesh.n_faces(), 1);
+        let positions: Vec<[f64; 3]> = (0..8).map(|v| [f64::from(v); 3]).collect();
+        assert_eq!(pieces[0].positions(&positions), [4.0, 5.0, 6.0, 7.0].map(|x| [x; 3]));
+        let uvs: Vec<[f64; 2]> = (0..9).map(|corner| [f64::from(corner); 2]).collect();
+        assert_eq!(pieces[1].corner_uvs(&uvs), [3.0, 4.0, 5.0].map(|x| [x; 2]));
     }
 }

@@ -63,7 +63,7 @@ pub fn manifold_quads(
     let settings = ExtractOptions::default();
     let mut refused = None;
     let mut is_manifold = |piece: &Component, uvs: &[[f64; 2]]| {
-        let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        let positions = piece.positions(positions);
         // A small piece may have no whole cell; whether the mesh has any is found in the end.
         let Ok(extraction) = extract(&piece.mesh, &positions, uvs, &settings) else { return true };
         let faults = extraction.mesh.connectivity().err();

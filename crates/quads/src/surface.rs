@@ -63,11 +63,7 @@ impl Surface {
 
     fn normal_at(&self, face: u32, location: TrianglePointLocation) -> Point {
         let Some(&[a, b, c]) = self.bvh.indices().get(face as usize) else { return [0.0; 3] };
-        let weights = match location {
-            TrianglePointLocation::OnVertex(k) => [0, 1, 2].map(|i| f64::from(i == k)),
-            other => other.barycentric_coordinates().unwrap_or([1.0; 3]),
-        };
-        let sum = match weights.map(|w| w > ON_SIDE) {
+        let sum = match corner_weights(location).map(|w| w > ON_SIDE) {
             [true, true, true] => self.of_face[face as usize],
             [true, true, false] => self.of_edge[&edge(a, b)],
             [false, true, true] => self.of_edge[&edge(b, c)],
@@ -89,11 +85,15 @@ pub(crate) fn nearest_in_triangle(at: Point, corners: [Point; 3]) -> (Point, [f6
     let [a, b, c] = corners.map(vector);
     let (found, location) =
         Triangle::new(a, b, c).project_local_point_and_get_location(vector(at), false);
-    let weights = match location {
+    ([found.point.x, found.point.y, found.point.z], corner_weights(location))
+}
+
+/// The weights of the corners of a triangle at a point of it.
+fn corner_weights(location: TrianglePointLocation) -> [f64; 3] {
+    match location {
         TrianglePointLocation::OnVertex(k) => [0, 1, 2].map(|i| f64::from(i == k)),
         other => other.barycentric_coordinates().unwrap_or([1.0 / 3.0; 3]),
-    };
-    ([found.point.x, found.point.y, found.point.z], weights)
+    }
 }
 
 /// Distance of a point from a triangle.

@@ -163,10 +163,10 @@ impl<'p> Components<'p, '_, '_> {
     ) -> Result<(), QuantizeError> {
         Watch::new(self.observer, k, self.pieces.len()).enter(Stage::Integers)?;
         let piece = &self.pieces[k];
-        let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        let positions = piece.positions(positions);
         let metric = Metric::from_positions(&piece.mesh, &positions);
-        let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
-        let map = SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
+        let uvs = piece.corner_uvs(map.corner_uvs());
+        let map = SeamlessMap::certify(&piece.mesh, uvs, &options.tolerance)
             .map_err(|cause| self.error(k, cause.into()))?;
         let search = ComponentSearch::new(piece, &metric, &map, &aligned.restrict(piece), options);
         self.searches.push(search.map_err(|cause| self.error(k, cause))?);

@@ -84,7 +84,7 @@ fn lay_out_field(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Baseline, MethodError> {
     let mesh = &piece.mesh;
-    let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+    let positions = piece.positions(positions);
     let metric = Metric::from_positions(mesh, &positions);
     let mut log = StageLog::default();
 

@@ -21,7 +21,7 @@ pub(super) fn map_component(
     watch: &mut Watch<'_, '_>,
 ) -> Result<ComponentMap, MethodError> {
     let mesh = &piece.mesh;
-    let positions: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+    let positions = piece.positions(positions);
     let metric = Metric::from_positions(mesh, &positions);
     let features = features.restrict(piece);
     let mut domain = Domain::new(mesh, &positions, &metric, features, options.largest_index());

@@ -105,9 +105,8 @@ pub fn relayout(
 ) -> Result<Relayout, MapError> {
     run(mesh, positions, options, observer, |piece, _, watch| {
         watch.enter(Stage::Cut)?;
-        let uvs = piece.faces.iter().flat_map(|f| f.halfedges().map(|h| map.corner_uvs()[h.at()]));
-        SeamlessMap::certify(&piece.mesh, uvs.collect(), &options.tolerance)
-            .map_err(MethodError::Uncertified)
+        let uvs = piece.corner_uvs(map.corner_uvs());
+        SeamlessMap::certify(&piece.mesh, uvs, &options.tolerance).map_err(MethodError::Uncertified)
     })
 }
 
@@ -154,7 +153,7 @@ fn run(
     let asked = options.features.as_ref().unwrap_or(&none);
     let mut outcome = FeatureTally::default();
     let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
-        let here: Vec<_> = piece.vertices.iter().map(|v| positions[v.at()]).collect();
+        let here = piece.positions(positions);
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
         let (kept, released) = followed(&piece.mesh, &map, &asked.restrict(piece))
