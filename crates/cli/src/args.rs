@@ -52,6 +52,8 @@ impl RunArgs {
 pub(crate) struct FeatureArgs {
     /// Feature edges, from one of these sources; may be given several times
     ///
+    /// auto           the boundary, and creases found by the shape of the surface
+    /// none           no edge, where `auto` would be the default
     /// angle:DEGREES  where the surface bends by that much or more
     /// boundary       the boundary
     /// lines          the `l` elements of the mesh, an OBJ file
@@ -60,8 +62,9 @@ pub(crate) struct FeatureArgs {
     /// sharp:FILE     a .sharp file of QuadWild: the count, then `type,face,side` a line
     ///
     /// Vertices and faces are those of the file, also with `--repair`.
-    #[arg(long, value_name = "SOURCE", verbatim_doc_comment)]
-    features: Vec<FeatureSource>,
+    /// The default is `auto` for quads and integer-grid maps of a mesh.
+    #[arg(long, value_name = "SOURCE", value_parser = source, verbatim_doc_comment)]
+    features: Vec<Option<FeatureSource>>,
 
     /// The boundary as well, as with `--features boundary`
     #[arg(long)]
@@ -69,16 +72,29 @@ pub(crate) struct FeatureArgs {
 }
 
 impl FeatureArgs {
-    /// All sources.
-    pub(crate) fn features(&self) -> Features {
-        let sources = self.features.iter().cloned();
+    /// All sources, or these if none is given.
+    pub(crate) fn or(&self, default: Features) -> Features {
+        if self.features.is_empty() && !self.align_boundary {
+            return default;
+        }
         let boundary = self.align_boundary.then_some(FeatureSource::Boundary);
-        sources.chain(boundary).fold(Features::none(), Features::and)
+        self.sources().cloned().chain(boundary).fold(Features::none(), Features::and)
     }
 
     /// The files that features are read from.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        self.features.iter().filter_map(FeatureSource::file)
+        self.sources().filter_map(FeatureSource::file)
+    }
+
+    fn sources(&self) -> impl Iterator<Item = &FeatureSource> {
+        self.features.iter().flatten()
+    }
+}
+
+fn source(text: &str) -> Result<Option<FeatureSource>, String> {
+    match text {
+        "none" => Ok(None),
+        _ => text.parse().map(Some),
     }
 }
 

@@ -2,9 +2,10 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::Elements;
+use crate::options::GridSize;
 use crate::surface::Surface;
 use seamstress_mesh::features::{
-    EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, sharp_edges,
+    EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, creases, sharp_edges,
 };
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
 use seamstress_parametrize::{
@@ -24,6 +25,8 @@ const LISTED: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FeatureSource {
+    /// The boundary, and creases found by the shape of the surface: `auto`.
+    Auto,
     /// Edges at which the surface bends by this many degrees or more: `angle:40`.
     Angle(f64),
     /// The boundary: `boundary`.
@@ -43,7 +46,7 @@ impl FeatureSource {
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Pairs(file) | Self::Sharp(file) => Some(file),
-            Self::Angle(_) | Self::Boundary | Self::Lines | Self::Edges(_) => None,
+            Self::Auto | Self::Angle(_) | Self::Boundary | Self::Lines | Self::Edges(_) => None,
         }
     }
 }
@@ -54,6 +57,7 @@ impl FromStr for FeatureSource {
     fn from_str(text: &str) -> Result<Self, String> {
         let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
         match (kind, rest) {
+            ("auto", "") => Ok(Self::Auto),
             ("lines", "") => Ok(Self::Lines),
             ("boundary", "") => Ok(Self::Boundary),
             ("angle", degrees) => match degrees.parse::<f64>() {
@@ -66,7 +70,7 @@ impl FromStr for FeatureSource {
             ("pairs", file) if !file.is_empty() => Ok(Self::Pairs(file.into())),
             ("sharp", file) if !file.is_empty() => Ok(Self::Sharp(file.into())),
             _ => {
-                Err("expected angle:DEGREES, boundary, lines, edges:A-B, pairs:FILE or sharp:FILE"
+                Err("expected auto, angle:DEGREES, boundary, lines, edges:A-B, pairs:FILE or sharp:FILE"
                     .into())
             }
         }
@@ -82,6 +86,7 @@ fn edge(text: &str) -> Result<[u32; 2], String> {
 impl fmt::Display for FeatureSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Auto => f.write_str("auto"),
             Self::Angle(degrees) => write!(f, "angle:{degrees}"),
             Self::Boundary => f.write_str("boundary"),
             Self::Lines => f.write_str("lines"),
@@ -110,7 +115,7 @@ impl schemars::JsonSchema for FeatureSource {
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         schemars::json_schema!({
             "type": "string",
-            "description": "angle:DEGREES, boundary, lines, edges:A-B,C-D, pairs:FILE or sharp:FILE",
+            "description": "auto, angle:DEGREES, boundary, lines, edges:A-B,C-D, pairs:FILE or sharp:FILE",
         })
     }
 }
@@ -122,17 +127,25 @@ impl<'de> Deserialize<'de> for FeatureSource {
 }
 
 /// Edges that a map, and quads, should follow: those of all sources.
+///
+/// The default leaves the choice to what is made: quad meshes and integer-grid maps of a mesh follow those of
+/// [`FeatureSource::Auto`], all else none.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct Features {
-    sources: Vec<FeatureSource>,
+    sources: Option<Vec<FeatureSource>>,
 }
 
 impl Features {
-    /// No features.
+    /// No features, not even by default.
     pub fn none() -> Self {
-        Self::default()
+        Self { sources: Some(Vec::new()) }
+    }
+
+    /// The boundary, and creases found by the shape of the surface.
+    pub fn auto() -> Self {
+        Self::none().and(FeatureSource::Auto)
     }
 
     /// Edges at which the surface bends by this many degrees or more.
@@ -152,20 +165,26 @@ impl Features {
 
     /// Those of another source as well.
     pub fn and(mut self, source: FeatureSource) -> Self {
-        if !self.sources.contains(&source) {
-            self.sources.push(source);
+        let sources = self.sources.get_or_insert_default();
+        if !sources.contains(&source) {
+            sources.push(source);
         }
         self
     }
 
     /// The sources.
     pub fn sources(&self) -> &[FeatureSource] {
-        &self.sources
+        self.sources.as_deref().unwrap_or_default()
     }
 
     /// Whether none is asked for.
     pub fn is_none(&self) -> bool {
-        self.sources.is_empty()
+        self.sources().is_empty()
+    }
+
+    /// These, or others where the choice was left open.
+    pub(crate) fn or(&self, default: Self) -> Self {
+        if self.sources.is_some() { self.clone() } else { default }
     }
 }
 
@@ -261,8 +280,8 @@ pub struct FeatureCurve {
 
 impl FeatureCurves {
     fn new(surface: &Surface, edges: EdgeSet, sources: Vec<FeatureSourceReport>) -> Self {
-        let align_boundary =
-            sources.iter().any(|s| s.source == FeatureSource::Boundary.to_string());
+        let with_boundary = [FeatureSource::Boundary, FeatureSource::Auto].map(|s| s.to_string());
+        let align_boundary = sources.iter().any(|s| with_boundary.contains(&s.source));
         let graph = FeatureGraph::new(surface.mesh(), surface.metric(), &edges);
         let pairs = edges.vertex_pairs(surface.mesh());
         let nodes = |of_kind: &dyn Fn(NodeKind) -> bool| {
@@ -405,10 +424,19 @@ impl Surface {
     /// # Errors
     /// [`ErrorKind::BadFeatures`] where a source names what is not an edge, and [`ErrorKind::Unreadable`].
     pub fn features(&self, features: &Features) -> Result<FeatureCurves, Error> {
-        let namer = Namer::new(self);
+        self.features_for(features, GridSize::default())
+    }
+
+    /// The same for a grid: creases that are short for its cells are not found.
+    pub(crate) fn features_for(
+        &self,
+        features: &Features,
+        size: GridSize,
+    ) -> Result<FeatureCurves, Error> {
+        let namer = Namer::new(self, size);
         let mut edges = EdgeSet::new(self.mesh(), []);
         let mut sources = Vec::new();
-        for source in &features.sources {
+        for source in features.sources() {
             let found =
                 namer.edges_of(source).map_err(|error| error.at_stage(Some(Stage::Features)))?;
             sources.push(FeatureSourceReport { source: source.to_string(), edges: found.len() });
@@ -424,7 +452,7 @@ impl Surface {
 /// If a file cannot be read, or a source names what is not an edge.
 #[cfg(feature = "lab")]
 pub(crate) fn named_edges(surface: &Surface, sources: &[FeatureSource]) -> Result<EdgeSet, Error> {
-    let namer = Namer::new(surface);
+    let namer = Namer::new(surface, GridSize::default());
     sources.iter().try_fold(EdgeSet::new(surface.mesh(), []), |edges, source| {
         Ok(edges.union(surface.mesh(), &namer.edges_of(source)?))
     })
@@ -434,6 +462,8 @@ pub(crate) fn named_edges(surface: &Surface, sources: &[FeatureSource]) -> Resul
 struct Namer<'a> {
     surface: &'a Surface,
     finder: EdgeFinder<'a>,
+    /// Edge length of the cells that are to follow features, mesh units.
+    cell: f64,
 }
 
 /// An edge by the vertices of the input, and what to call it in a message.
@@ -443,19 +473,24 @@ struct Named {
 }
 
 impl<'a> Namer<'a> {
-    fn new(surface: &'a Surface) -> Self {
+    fn new(surface: &'a Surface, size: GridSize) -> Self {
+        let cell = size.to_quantize().cell(surface.metric().side());
         let finder = match surface.parts().vertex_origin.as_deref() {
             Some(origin) => {
                 EdgeFinder::after_repair(surface.mesh(), origin, surface.parts().n_input_vertices)
             }
             None => EdgeFinder::new(surface.mesh()),
         };
-        Self { surface, finder }
+        Self { surface, finder, cell }
     }
 
     fn edges_of(&self, source: &FeatureSource) -> Result<EdgeSet, Error> {
         let (surface, mesh) = (self.surface, self.surface.mesh());
         match source {
+            FeatureSource::Auto => {
+                let found = creases(mesh, surface.positions(), surface.metric(), self.cell);
+                Ok(found.union(mesh, &EdgeSet::boundary(mesh)))
+            }
             FeatureSource::Angle(degrees) => {
                 Ok(sharp_edges(mesh, surface.positions(), degrees.to_radians()))
             }
@@ -549,6 +584,7 @@ mod tests {
     #[test]
     fn sources_are_read_and_written_alike() {
         let good = [
+            "auto",
             "angle:40",
             "angle:0.5",
             "boundary",
@@ -563,6 +599,7 @@ mod tests {
         }
         let bad = [
             "",
+            "auto:1",
             "angle",
             "angle:0",
             "angle:181",

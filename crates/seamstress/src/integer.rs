@@ -154,6 +154,7 @@ impl Surface {
     /// [`ErrorKind::NoIntegerMap`], and those of [`Surface::parametrize`].
     pub fn integer_map(&self, options: &IntegerMapOptions) -> Result<IntegerGridMap, Error> {
         options.validate()?;
+        let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
             let start = self.make_seamless(options, watcher)?;
             let solution = self.make_integer(&start, options, watcher)?;
@@ -176,6 +177,7 @@ impl Surface {
         options: &IntegerMapOptions,
     ) -> Result<IntegerGridMap, Error> {
         options.validate()?;
+        let options = &options.clone().map(options.map.or_features(Features::none()));
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let made = self.context().run(|watcher| {
             let map = self.seamless_map(corner_uvs, certify)?;

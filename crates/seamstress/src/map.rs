@@ -2,9 +2,9 @@
 
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
-use crate::features::{AlignedFeatures, FeatureReport};
+use crate::features::{AlignedFeatures, FeatureReport, Features};
 use crate::finding::{Elements, listing};
-use crate::options::MapOptions;
+use crate::options::{GridSize, MapOptions};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
@@ -286,7 +286,12 @@ impl Surface {
         settings: method::MapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessMap, Error> {
-        let asked = self.features(&options.features)?;
+        let options = &options.or_features(Features::none());
+        let size = match settings.purpose {
+            method::Purpose::Quads { edge_length } => GridSize::EdgeLength(edge_length),
+            method::Purpose::Texture => GridSize::default(),
+        };
+        let asked = self.features_for(&options.features, size)?;
         let mut observe = |progress| watcher.observe(progress);
         let solution =
             make_aligned_map(self.mesh(), self.positions(), &asked.edges, &settings, &mut observe)

@@ -17,7 +17,8 @@ use std::time::Duration;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[non_exhaustive]
 pub struct MapOptions {
-    /// Edges that the map should have on its axes
+    /// Edges that the map should have on its axes; the default is none for a map, and those of `auto` for an
+    /// integer-grid map or quads of a mesh
     #[cfg_attr(feature = "clap", arg(skip))]
     pub features: Features,
 
@@ -67,7 +68,7 @@ impl Default for MapOptions {
     fn default() -> Self {
         let rounding = RoundingOptions::default();
         Self {
-            features: Features::none(),
+            features: Features::default(),
             features_strict: false,
             cone_bias: rounding.cone_bias,
             cone_price: None,
@@ -115,6 +116,11 @@ impl MapOptions {
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;
         self.cone_price.map_or(Ok(()), |price| not_negative("cone_price", price))
+    }
+
+    /// The same with features chosen where that was left open.
+    pub(crate) fn or_features(&self, default: Features) -> Self {
+        self.clone().features(self.features.or(default))
     }
 
     pub(crate) fn to_method(&self) -> method::MapOptions {

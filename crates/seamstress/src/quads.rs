@@ -1,7 +1,7 @@
 //! Quad meshes.
 
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::FeatureReport;
+use crate::features::{FeatureReport, Features};
 use crate::finding::Elements;
 use crate::integer::GridReport;
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
@@ -278,6 +278,7 @@ impl Surface {
     /// [`ErrorKind::NoQuads`], [`ErrorKind::NotAManifold`], and those of [`Surface::integer_map`].
     pub fn quad_mesh(&self, options: &QuadOptions) -> Result<QuadMesh, Error> {
         options.validate()?;
+        let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
             let integer = IntegerMapOptions {
                 size: options.size,
@@ -325,7 +326,7 @@ impl Surface {
         &self,
         uvs: &[[f64; 2]],
         face_uvs: &[[u32; 3]],
-        features: &crate::Features,
+        features: &Features,
         options: &ExtractionOptions,
     ) -> Result<QuadMesh, Error> {
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;

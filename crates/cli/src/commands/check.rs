@@ -8,8 +8,8 @@ use crate::output::{Kind, Plan};
 use crate::summary;
 use crate::text::{counted, row};
 use seamstress::{
-    CertifyOptions, Error, FeatureCurves, Finding, Inspection, MapFile, Severity, Surface,
-    SurfaceOptions, Verdict, listing,
+    CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Severity,
+    Surface, SurfaceOptions, Verdict, listing,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -99,7 +99,7 @@ struct CheckedMap {
 
 impl CheckArgs {
     fn options(&self) -> CertifyOptions {
-        let mut options = CertifyOptions::default().features(self.features.features());
+        let mut options = CertifyOptions::default().features(self.features.or(Features::none()));
         options.tolerance = self.tolerance.unwrap_or(options.tolerance);
         options.alignment_tolerance =
             self.alignment_tolerance.unwrap_or(options.alignment_tolerance);
@@ -218,7 +218,7 @@ impl Command for CheckArgs {
             return Ok(Checked { inspection, surface: None, map: None });
         }
         let surface = session.surface(inspection.clone())?;
-        let features = self.features.features();
+        let features = self.features.or(Features::none());
         let curves = match features.is_none() {
             true => None,
             false => Some(surface.features(&features)?),

@@ -16,13 +16,10 @@ Examples:
   seamstress features part.obj --features angle:30 --align-boundary --picture part.png
   seamstress features part.obj --features sharp:part.sharp --json | jq .features.curves";
 
-/// Angle, in degrees, of the edges that are shown where no source is given.
-const USUAL_ANGLE: f64 = 40.0;
-
 /// Show the features of a mesh: the creases, rims and marked edges that a map should follow
 ///
 /// Lists their curves, loops, corners and open ends, and draws them: corners are dark dots, open ends
-/// orange ones. Without a source these are the edges at which the surface bends by 40 degrees or more.
+/// orange ones. Without a source these are those of `auto`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct FeaturesArgs {
@@ -63,8 +60,7 @@ impl Command for FeaturesArgs {
 
     fn make(&self, session: &Session) -> Result<Self::Product, Failure> {
         let surface = session.open(&self.mesh, &self.surface)?;
-        let asked = self.features.features();
-        let asked = if asked.is_none() { Features::angle(USUAL_ANGLE) } else { asked };
+        let asked = self.features.or(Features::auto());
         let curves = surface.features(&asked)?;
         Ok((surface, curves))
     }

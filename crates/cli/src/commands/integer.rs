@@ -8,8 +8,8 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
-    AtomicFile, CertifyOptions, Error, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
-    MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
+    AtomicFile, CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions,
+    MapFile, MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -28,8 +28,8 @@ Examples:
 /// Rounds a seamless map so that the shifts across all seams and the positions of all cones are whole
 /// numbers, exactly, without flipping a triangle. The grid of unit squares is then a quad mesh of the
 /// surface. Where cones are too close for the grid, it is made finer, and the summary says so. Without a
-/// map the seamless map is made first, as `map` does. Features and boundaries that are aligned come to lie
-/// on lines of the grid; in a map that is given, those that it aligns.
+/// map the seamless map is made first, as `map` does, along the boundary and the creases. Features and boundaries
+/// that are aligned come to lie on lines of the grid; in a map that is given, those of `--features` that it aligns.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct IntegerArgs {
@@ -83,7 +83,7 @@ impl IntegerArgs {
     fn options(&self) -> IntegerMapOptions {
         let mut options = IntegerMapOptions::default();
         (options.size, options.rounding) = (self.size.grid(), self.rounding);
-        options.map(self.method.clone()).features(self.features.features())
+        options.map(self.method.clone()).features(self.features.or(Features::default()))
     }
 }
 

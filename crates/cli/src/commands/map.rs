@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::lab::{LaidOut, MethodOptions};
-use seamstress::{AtomicFile, Error, SurfaceOptions, TextureOptions, write_cones};
+use seamstress::{AtomicFile, Error, Features, SurfaceOptions, TextureOptions, write_cones};
 use serde_json::Value;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ pub(crate) struct MapArgs {
 impl MapArgs {
     fn options(&self) -> MethodOptions {
         let mut options = self.method.clone();
-        options.map.features = self.features.features();
+        options.map.features = self.features.or(Features::none());
         options
     }
 }

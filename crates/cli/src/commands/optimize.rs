@@ -9,7 +9,7 @@ use crate::summary;
 use crate::text::{counted, rounded, row};
 use seamstress::lab::read_stretches;
 use seamstress::{
-    AtomicFile, ConicStats, Error, MapFile, Objective, OptimizeOptions, OptimizeReport,
+    AtomicFile, ConicStats, Error, Features, MapFile, Objective, OptimizeOptions, OptimizeReport,
     SeamlessMap, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
@@ -87,7 +87,7 @@ impl Command for OptimizeArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        if self.map.is_none() && !self.features.features().is_none() {
+        if self.map.is_none() && !self.features.or(Features::none()).is_none() {
             let text =
                 "features need a map that follows them, as made by `seamstress map --features`";
             return Err(Failure::Usage(format!("{}: {text}", self.mesh.display())));
@@ -102,7 +102,7 @@ impl Command for OptimizeArgs {
 
     fn make(&self, session: &Session) -> Result<Self::Product, Failure> {
         let surface = session.open(&self.mesh, &self.surface)?;
-        let mut options = self.options.clone().features(self.features.features());
+        let mut options = self.options.clone().features(self.features.or(Features::none()));
         options.stretches = self.anisotropy.as_ref().map(read_stretches).transpose()?;
         let Some(path) = &self.map else {
             return Ok(surface.flatten_disk(&options)?);

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::row;
 use seamstress::{
-    AtomicFile, Error, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
+    AtomicFile, Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
 };
 use serde_json::Value;
 use std::io;
@@ -18,15 +18,15 @@ const EXAMPLES: &str = "\
 Examples:
   seamstress quad bunny.ply --quads 5000 -o quads.obj
   seamstress quad bunny.ply --edge-length 0.02 -o quads.ply --picture quads.png
-  seamstress quad part.off --quads 3000 -o quads.obj --features angle:40 --align-boundary
+  seamstress quad part.off --quads 3000 -o quads.obj --features angle:20 --align-boundary
   seamstress quad scan.stl --quads 800 -o quads.obj --repair --time-limit 60";
 
 /// Make a quad mesh of a triangle mesh
 ///
 /// A seamless map (as by `map`), rounded to an integer-grid map (as by `integer`), whose grid is extracted
 /// (as by `extract`): quads only, an oriented manifold, its irregular vertices the cones of the map.
-/// Creases are followed with `--features`, boundaries with `--align-boundary`; cells that a boundary cuts
-/// are left out.
+/// The quads follow the boundary and the creases, as far as `--features` does not say otherwise; cells that a
+/// boundary cuts which they do not follow are left out.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct QuadArgs {
@@ -69,7 +69,7 @@ impl QuadArgs {
         let mut options = QuadOptions::default();
         (options.size, options.shape, options.map) =
             (self.size.grid(), self.shape, self.map.clone());
-        options.features(self.features.features())
+        options.features(self.features.or(Features::default()))
     }
 }
 

@@ -44,7 +44,7 @@ fn normal(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> Option<[f64; 3]> {
     (size > MIN_RELATIVE_HEIGHT * squares[longest]).then(|| n.map(|x| x / size))
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

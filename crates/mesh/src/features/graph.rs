@@ -59,8 +59,18 @@ pub struct FeatureGraph {
 impl FeatureGraph {
     /// Joins edges to curves. Nothing but the metric decides what is a turn.
     pub fn new(mesh: &TriMesh, metric: &Metric, edges: &EdgeSet) -> Self {
-        let nodes: Vec<Node> =
-            mesh.vertices().filter_map(|v| node(mesh, metric, edges, v)).collect();
+        let nodes = mesh.vertices().filter_map(|v| node(mesh, metric, edges, v)).collect();
+        Self::between(mesh, metric, edges, nodes)
+    }
+
+    /// Joins edges to chains that pass through turns: only vertices without exactly two edges end them.
+    pub(super) fn chains(mesh: &TriMesh, metric: &Metric, edges: &EdgeSet) -> Self {
+        let nodes = mesh.vertices().filter_map(|v| node(mesh, metric, edges, v));
+        let nodes = nodes.filter(|node| node.kind != NodeKind::Turn).collect();
+        Self::between(mesh, metric, edges, nodes)
+    }
+
+    fn between(mesh: &TriMesh, metric: &Metric, edges: &EdgeSet, nodes: Vec<Node>) -> Self {
         let mut tracer = Tracer::new(mesh, metric, edges, &nodes);
         let mut curves = Vec::new();
         for node in &nodes {
@@ -72,6 +82,15 @@ impl FeatureGraph {
             curves.extend(tracer.trace(mesh.origin(edge), edge, true));
         }
         Self { nodes, curves }
+    }
+
+    /// The nodes at the ends of a curve.
+    pub(super) fn ends(&self, curve: &Curve) -> impl Iterator<Item = &Node> {
+        let ends = [curve.vertices.first(), curve.vertices.last()].into_iter().flatten();
+        ends.filter_map(|&v| {
+            let found = self.nodes.binary_search_by_key(&v, |node| node.vertex);
+            found.ok().map(|k| &self.nodes[k])
+        })
     }
 
     /// Number of nodes of a kind.

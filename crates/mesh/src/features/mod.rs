@@ -3,14 +3,17 @@
 //! * [`EdgeSet`]: a set of edges of a mesh, from vertex pairs ([`EdgeFinder`]), from dihedral angles
 //!   ([`sharp_edges`]) or the boundary.
 //! * [`sectors`]: the fans of corners into which a set of edges parts the surface around a vertex.
+//! * [`creases`]: those that the shape of a surface shows.
 //! * [`FeatureGraph`]: corners, curves, loops and open ends of a set.
 
+mod creases;
 mod dihedral;
 mod edge_set;
 mod finder;
 mod graph;
 mod sector;
 
+pub use creases::creases;
 pub use dihedral::{dihedral_angle, sharp_edges};
 pub use edge_set::EdgeSet;
 pub use finder::{EdgeFinder, EdgeNameError};
