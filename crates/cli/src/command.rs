@@ -5,7 +5,7 @@ use crate::failure::{Failure, Status, print};
 use crate::job::{Cost, Job};
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
-use crate::text::{self, listing, row};
+use crate::text::{self, as_options, listing, row};
 use seamstress::{
     AtomicFile, Context, Error, Inspection, Surface, SurfaceOptions, listing as lines,
 };
@@ -95,7 +95,7 @@ impl Session {
     pub(crate) fn report_findings(&self, inspection: &Inspection) {
         let report = inspection.report();
         for note in &report.notes {
-            self.report(&format!("note: {note}"));
+            self.report(&format!("note: {}", as_options(note)));
         }
         for repair in listing(&report.repairs, SHOWN_REPAIRS) {
             self.report(&format!("repair: {repair}"));

@@ -10,6 +10,8 @@ use seamstress::{
 
 /// Dropped features that are listed; the report has them all.
 const SHOWN_DROPPED: usize = 10;
+/// Components without quads that are named; the report has them all.
+const SHOWN_LOST: usize = 5;
 /// Faults of quads that are listed.
 const SHOWN_FAULTS: usize = 5;
 
@@ -312,9 +314,41 @@ pub(crate) fn quad_warnings(report: &QuadMeshReport) -> Vec<String> {
         let vertices = counted(quads.split_vertices, "vertex");
         lines.push(format!("note: {vertices} added where quads met in a point only"));
     }
+    lines.extend(lost_warning(report));
     lines.extend(folds_text(report).map(|text| format!("warning: {text}")));
     lines.extend(report.orientation.as_ref().and_then(orientation_warning));
     lines
+}
+
+/// Components without quads, and what may give them some.
+fn lost_warning(report: &QuadMeshReport) -> Option<String> {
+    let (lost, all) = (&report.quads.components_without_quads, &report.input.components);
+    if lost.is_empty() {
+        return None;
+    }
+    let components: Vec<_> = lost.iter().filter_map(|&c| Some((c, all.get(c as usize)?))).collect();
+    let faces: usize = components.iter().map(|(_, component)| component.faces).sum();
+    let mut named: Vec<String> = components
+        .iter()
+        .take(SHOWN_LOST)
+        .map(|(c, component)| format!("{c} (from triangle {})", component.first_face))
+        .collect();
+    if components.len() > SHOWN_LOST {
+        named.push("...".into());
+    }
+    let weld = match report.input.coincident_vertices {
+        0 => "",
+        _ => ", or `--weld` if pieces should be joined",
+    };
+    Some(format!(
+        "warning: {} of {} have no quads, since no cell fits into them whole: {}; they have {} of {}\n\
+         hint: try more quads or `--align-boundary`{weld}",
+        lost.len(),
+        counted(all.len(), "component"),
+        named.join(", "),
+        faces,
+        counted(report.input.faces, "triangle"),
+    ))
 }
 
 fn orientation_warning(orientation: &Orientation) -> Option<String> {

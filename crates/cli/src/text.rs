@@ -48,7 +48,7 @@ pub(crate) fn as_options(text: &str) -> String {
 }
 
 /// Options of the library that its messages name.
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 13] = [
     "allow_flips",
     "alignment_tolerance",
     "best_effort",
@@ -61,6 +61,7 @@ const OPTIONS: [&str; 12] = [
     "rounding",
     "time_limit",
     "tolerance",
+    "weld",
 ];
 
 /// Calls of the library that its messages name, and the commands that make them.

@@ -545,12 +545,18 @@ impl<'a> Namer<'a> {
         }
     }
 
+    /// What the ends of an edge are merged into.
+    fn merged(&self, pair: [u32; 2]) -> [u32; 2] {
+        let into = self.surface.parts().merged_into.as_deref().unwrap_or_default();
+        pair.map(|v| into.get(v as usize).copied().unwrap_or(v))
+    }
+
     fn find(&self, source: Option<&str>, named: Vec<Named>) -> Result<EdgeSet, Error> {
         let mut edges: Vec<Halfedge> = Vec::new();
         let mut faults = Vec::new();
         let mut elements = Elements::default();
         for Named { pair, name } in named {
-            match pair.clone().and_then(|pair| self.finder.find(pair)) {
+            match pair.clone().and_then(|pair| self.finder.find(self.merged(pair))) {
                 Ok(found) => edges.extend(found),
                 Err(error) => {
                     elements.edges.extend(pair);

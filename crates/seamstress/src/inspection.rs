@@ -1,21 +1,23 @@
-//! From a file or arrays to triangles that have been checked, and repaired if asked.
+//! From a file or arrays to triangles that have been checked, and welded and repaired if asked.
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Finding, Severity, listing};
 use crate::polygons::Polygons;
 use crate::report::SurfaceReport;
-use crate::words::counted;
-use seamstress_mesh::soup::{self, Facts, Fault, TriangleSoup, Triangulation, TriangulationNotes};
+use crate::words::{counted, rounded};
+use seamstress_mesh::soup::{
+    self, Facts, Fault, Merged, Repair, TriangleSoup, Triangulation, TriangulationNotes,
+};
 use serde::{Deserialize, Serialize};
-use std::mem::discriminant;
 #[cfg(feature = "io")]
 use std::path::Path;
+use std::str::FromStr;
 
 /// Faults of each kind that the error for what is no surface lists.
 const LISTED: usize = 5;
 
 /// How a surface is made of what is read.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
@@ -23,16 +25,67 @@ const LISTED: usize = 5;
 pub struct SurfaceOptions {
     /// Repair what can be repaired without moving a vertex, and go on with the repaired mesh
     ///
-    /// Drops degenerate and repeated faces and unused vertices, turns faces over that disagree with
-    /// their neighbours, and splits vertices where surfaces only touch. Every repair is listed.
+    /// Drops degenerate and repeated faces and unused vertices, leaves out repeated corners, collapses edges
+    /// of length zero, turns faces over that disagree with their neighbours, cuts edges of three or more faces
+    /// apart into sheets and pieces such as Moebius bands open, and splits vertices where surfaces only touch.
+    /// Every repair is listed.
     #[cfg_attr(feature = "clap", arg(long))]
     pub repair: bool,
+
+    /// Merge vertices within this distance of another, in mesh units
+    ///
+    /// Without a distance, or with `auto`: exact copies, and within the noise of the copies if there is one, far
+    /// below the lengths of edges. `soups` does so where faces share next to no vertices, `off` never.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", num_args = 0..=1,
+        default_value = "soups", default_missing_value = "auto"))]
+    pub weld: Weld,
+}
+
+/// Which vertices are merged on reading.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Weld {
+    /// Copies of one vertex, where faces share next to no vertices.
+    #[default]
+    Soups,
+    /// Copies of one vertex.
+    Auto,
+    /// None.
+    Off,
+    /// Those within this distance of another, mesh units; with 0 those in the same place.
+    Within(f64),
+}
+
+impl FromStr for Weld {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "soups" => Ok(Self::Soups),
+            "auto" => Ok(Self::Auto),
+            "off" => Ok(Self::Off),
+            _ => match text.parse::<f64>() {
+                Ok(x) if x.is_finite() && x >= 0.0 => Ok(Self::Within(x)),
+                _ => Err("expected a distance, 0 or larger, or `auto`, `soups` or `off`; \
+                          files go before `--weld`"
+                    .into()),
+            },
+        }
+    }
 }
 
 impl SurfaceOptions {
     /// Whether to repair what can be repaired without moving a vertex.
     pub fn repair(mut self, repair: bool) -> Self {
         self.repair = repair;
+        self
+    }
+
+    /// Sets which vertices are merged.
+    pub fn weld(mut self, weld: Weld) -> Self {
+        self.weld = weld;
         self
     }
 }
@@ -46,6 +99,7 @@ pub struct Inspection {
     report: SurfaceReport,
     findings: Vec<Finding>,
     is_repairable: bool,
+    is_repaired: bool,
 }
 
 /// What a surface keeps of its input.
@@ -59,7 +113,9 @@ pub(crate) struct Parts {
     pub(crate) lines: Vec<[u32; 2]>,
     pub(crate) n_input_vertices: usize,
     pub(crate) soup: TriangleSoup,
-    /// For each vertex the one that it was in the input; none if repairs have not touched them.
+    /// For each vertex of the input the one that it was merged into; none if no vertices were merged.
+    pub(crate) merged_into: Option<Vec<u32>>,
+    /// For each vertex the one that it was in the input; none if merging and repairs have not touched them.
     pub(crate) vertex_origin: Option<Vec<u32>>,
     /// For each face its polygon in the input.
     pub(crate) face_origin: Vec<u32>,
@@ -107,38 +163,43 @@ impl Inspection {
         polygons: Polygons,
         options: SurfaceOptions,
     ) -> Self {
-        let n_read = [positions.len(), polygons.len()];
-        let mut notes = given.notes;
-        let triangulation = soup::triangulate(&positions, polygons.iter());
-        let mut parts = Parts {
-            input: given.input,
-            polygons,
-            lines: given.lines,
-            n_input_vertices: n_read[0],
-            ..Parts::default()
-        };
-        let checked = match triangulation {
-            Ok(Triangulation { faces, polygon_of_face, notes: split, .. }) => {
-                notes.extend(triangulation_notes(&split));
-                Checked::new(TriangleSoup { positions, faces }, &polygon_of_face, options.repair)
-            }
-            Err(faults) => Checked::unsplit(positions, n_read, faults),
-        };
-        notes.extend(coincidence_note(&checked.facts));
+        let checked = Checked::new(&positions, &polygons, options);
         let findings: Vec<Finding> = checked.faults.iter().map(Finding::from).collect();
+        let coincident_vertices = checked.coincident_vertices();
+        let mut notes = given.notes;
+        notes.extend(checked.notes);
+        if coincident_vertices > 0 && !checked.facts.is_closed() {
+            let vertices = counted(coincident_vertices, "vertex");
+            notes.push(format!(
+                "{vertices} in the place of another, where the surface is not joined; `weld` joins them"
+            ));
+        }
         let report = SurfaceReport {
-            file: parts.input.clone(),
+            file: given.input.clone(),
             format: given.format,
-            vertices_read: n_read[0],
-            polygons_read: n_read[1],
+            vertices_read: positions.len(),
+            polygons_read: polygons.len(),
+            welded_vertices: checked.welded_vertices,
+            weld_tolerance: checked.weld_tolerance,
+            junction_edges: checked.junctions,
+            coincident_vertices,
             notes,
             warnings: of_severity(&findings, Severity::Warning).cloned().collect(),
             repairs: checked.repairs,
             ..SurfaceReport::new(&checked.facts)
         };
-        (parts.soup, parts.vertex_origin) = (checked.soup, checked.vertex_origin);
-        parts.face_origin = checked.face_origin;
-        Self { parts, report, findings, is_repairable: checked.is_repairable }
+        let parts = Parts {
+            input: given.input,
+            polygons,
+            lines: given.lines,
+            n_input_vertices: positions.len(),
+            soup: checked.soup,
+            merged_into: checked.merged_into,
+            vertex_origin: checked.vertex_origin,
+            face_origin: checked.face_origin,
+        };
+        let is_repairable = checked.is_repairable;
+        Self { parts, report, findings, is_repairable, is_repaired: options.repair }
     }
 
     /// Everything found wrong, errors and warnings, with vertices and faces of the input.
@@ -180,9 +241,10 @@ impl Inspection {
             counted(errors.len(), "fault"),
             listing(&errors, LISTED).join("\n  ")
         );
-        let hint = match self.is_repairable {
-            true => "all of them can be repaired: add `repair`",
-            false => "`repair` cannot mend all of them; `inspect` lists them all",
+        let hint = match (self.is_repaired, self.is_repairable) {
+            (true, _) => "`inspect` lists them all",
+            (false, true) => "all of them can be repaired: add `repair`",
+            (false, false) => "`repair` cannot mend all of them; `inspect` lists them all",
         };
         Error::new(ErrorKind::NotASurface, message)
             .at_stage(Some(Stage::Check))
@@ -205,91 +267,211 @@ struct Given {
     notes: Vec<String>,
 }
 
-/// Triangles after check and repairs.
+/// Triangles after check, merging and repairs.
+#[derive(Default)]
 struct Checked {
     soup: TriangleSoup,
     facts: Facts,
     /// In the vertices and polygons of the input.
     faults: Vec<Fault>,
     is_repairable: bool,
+    notes: Vec<String>,
     repairs: Vec<String>,
+    welded_vertices: usize,
+    weld_tolerance: Option<f64>,
+    /// In the vertices of the input.
+    junctions: Vec<[u32; 2]>,
+    merged_into: Option<Vec<u32>>,
     vertex_origin: Option<Vec<u32>>,
     face_origin: Vec<u32>,
 }
 
 impl Checked {
-    fn new(soup: TriangleSoup, polygon_of_face: &[u32], repair: bool) -> Self {
-        let report = soup::check(&soup);
-        let in_input = |faults: Vec<Fault>| {
-            let renamed = faults
-                .into_iter()
-                .map(|fault| fault.with_faces_renamed(|f| polygon_of_face[f as usize]));
-            renamed.collect()
+    fn new(positions: &[[f64; 3]], polygons: &Polygons, options: SurfaceOptions) -> Self {
+        let slices: Vec<&[u32]> = polygons.iter().collect();
+        let faults = soup::polygon_faults(positions.len(), &slices);
+        let has_bad_corners = !faults.is_empty();
+        let is_of_corners = |fault: &Fault| {
+            matches!(fault, Fault::RepeatedVertex { .. } | Fault::TooFewCorners { .. })
         };
-        if !repair {
-            let is_repairable =
-                !report.is_mesh() && soup::check(&soup::repair(soup.clone()).soup).is_mesh();
-            return Self {
-                soup,
-                facts: report.facts,
-                faults: in_input(report.faults),
-                is_repairable,
-                repairs: Vec::new(),
-                vertex_origin: None,
-                face_origin: polygon_of_face.to_vec(),
-            };
+        if !faults.iter().all(is_of_corners) {
+            return Self::unsplit(positions, slices.len(), faults);
         }
-        let repaired = soup::repair(soup);
-        let after = soup::check(&repaired.soup);
-        let faults = if after.is_mesh() {
-            after.faults
-        } else {
-            in_input(still_there(report.faults, &after.faults))
+        let mut checked = Self::default();
+        let mut repairs = Vec::new();
+        let into = checked.merge_vertices(positions, polygons, options, &mut repairs);
+        let merged = match into {
+            Some(_) => into,
+            None if options.repair && has_bad_corners => {
+                Some((0..positions.len() as u32).collect())
+            }
+            None => None,
+        }
+        .map(|into| (soup::merge(positions, polygons.iter(), &into), into));
+        match merged {
+            None => checked.split(positions.to_vec(), polygons.iter(), None, options, repairs),
+            Some((mut merged, into)) => {
+                repairs.append(&mut merged.repairs);
+                checked.merged_into = Some(into);
+                let positions = std::mem::take(&mut merged.positions);
+                let polygons = std::mem::take(&mut merged.polygons);
+                let slices = polygons.iter().map(Vec::as_slice);
+                checked.split(positions, slices, Some(&merged), options, repairs);
+            }
+        }
+        let is_error = |fault: &Fault| fault.severity() == soup::Severity::Error;
+        if !options.repair && checked.faults.iter().any(is_error) {
+            let repaired = Self::new(positions, polygons, options.repair(true));
+            checked.is_repairable = !repaired.faults.iter().any(is_error);
+        }
+        checked
+    }
+
+    /// For each vertex what it is merged into, if any is.
+    fn merge_vertices(
+        &mut self,
+        positions: &[[f64; 3]],
+        polygons: &Polygons,
+        options: SurfaceOptions,
+        repairs: &mut Vec<Repair>,
+    ) -> Option<Vec<u32>> {
+        let is_soup = || soup::is_unwelded(positions.len(), polygons.iter());
+        let automatic = || soup::weld_tolerance(positions, polygons.iter());
+        let tolerance = match options.weld {
+            Weld::Off => None,
+            Weld::Soups => is_soup().then(automatic),
+            Weld::Auto => Some(automatic()),
+            Weld::Within(tolerance) => Some(tolerance),
         };
-        Self {
-            soup: repaired.soup,
-            facts: after.facts,
-            faults,
-            is_repairable: false,
-            repairs: repaired.repairs.iter().map(ToString::to_string).collect(),
-            vertex_origin: Some(repaired.vertex_origin),
-            face_origin: repaired
-                .face_origin
-                .iter()
-                .map(|&face| polygon_of_face[face as usize])
-                .collect(),
+        if let Some(tolerance) = tolerance {
+            let into = soup::weld(positions, tolerance);
+            let count = n_merged(&into);
+            if count == 0 && options.weld == Weld::Soups {
+                return None;
+            }
+            (self.welded_vertices, self.weld_tolerance) = (count, Some(tolerance));
+            self.notes.push(weld_note(count, tolerance, options.weld));
+            return (count > 0).then_some(into);
         }
+        if !options.repair {
+            return None;
+        }
+        let into = soup::collapse(positions, polygons.iter());
+        let mut sets: Vec<[u32; 2]> = into.iter().copied().zip(0..).map(<[u32; 2]>::from).collect();
+        sets.sort_unstable();
+        let joined = sets.chunk_by(|a, b| a[0] == b[0]).filter(|set| set.len() > 1);
+        repairs.extend(joined.map(|set| Repair::CollapsedSides {
+            vertices: set.iter().map(|pair| pair[1]).collect(),
+        }));
+        (n_merged(&into) > 0).then_some(into)
+    }
+
+    /// Splits polygons into triangles, and checks these, after repairs if they are asked for.
+    fn split<'a>(
+        &mut self,
+        positions: Vec<[f64; 3]>,
+        polygons: impl ExactSizeIterator<Item = &'a [u32]>,
+        merged: Option<&Merged>,
+        options: SurfaceOptions,
+        repairs: Vec<Repair>,
+    ) {
+        self.repairs = repairs.iter().map(ToString::to_string).collect();
+        let polygon_was = |polygon: u32| match merged {
+            Some(merged) => merged.polygon_origin[polygon as usize],
+            None => polygon,
+        };
+        let vertex_was = |vertex: u32| match merged {
+            Some(merged) => merged.vertex_origin[vertex as usize],
+            None => vertex,
+        };
+        let n_polygons = polygons.len();
+        let (faces, polygon_of_face) = match soup::triangulate(&positions, polygons) {
+            Ok(Triangulation { faces, polygon_of_face, mut notes, .. }) => {
+                for polygon in &mut notes.unresolved {
+                    *polygon = polygon_was(*polygon);
+                }
+                self.notes.extend(triangulation_notes(&notes));
+                (faces, polygon_of_face.into_iter().map(polygon_was).collect::<Vec<u32>>())
+            }
+            Err(faults) => {
+                let faults = faults.into_iter().map(|fault| {
+                    fault.with_faces_renamed(polygon_was).with_vertices_renamed(vertex_was)
+                });
+                let unsplit = Self::unsplit(&positions, n_polygons, faults.collect());
+                (self.soup, self.facts, self.faults) =
+                    (unsplit.soup, unsplit.facts, unsplit.faults);
+                return;
+            }
+        };
+        let soup = TriangleSoup { positions, faces };
+        self.vertex_origin = merged.map(|merged| merged.vertex_origin.clone());
+        self.face_origin = polygon_of_face;
+        self.soup = match options.repair {
+            false => soup,
+            true => self.repair(soup, vertex_was),
+        };
+        let report = soup::check(&self.soup);
+        let in_input = |fault: Fault| {
+            let fault = fault.with_faces_renamed(|face| self.face_origin[face as usize]);
+            match &self.vertex_origin {
+                Some(origin) => fault.with_vertices_renamed(|v| origin[v as usize]),
+                None => fault,
+            }
+        };
+        self.faults = report.faults.into_iter().map(in_input).collect();
+        // Triangles of one polygon may have one fault.
+        self.faults.dedup();
+        self.facts = report.facts;
+    }
+
+    fn repair(&mut self, soup: TriangleSoup, vertex_was: impl Fn(u32) -> u32) -> TriangleSoup {
+        let done = soup::repair(soup);
+        let polygon_was = |face: u32| self.face_origin[face as usize];
+        let mut repairs: Vec<Repair> =
+            done.repairs.into_iter().map(|r| r.renamed(polygon_was, &vertex_was)).collect();
+        repairs.dedup();
+        self.repairs.extend(repairs.iter().map(ToString::to_string));
+        self.junctions = done.junctions.iter().map(|edge| edge.map(&vertex_was)).collect();
+        self.vertex_origin = Some(done.vertex_origin.into_iter().map(&vertex_was).collect());
+        self.face_origin = done.face_origin.into_iter().map(polygon_was).collect();
+        done.soup
+    }
+
+    /// Vertices in the place of another, not counting the copies that repairs have made.
+    fn coincident_vertices(&self) -> usize {
+        let mut origins = self.vertex_origin.clone().unwrap_or_default();
+        let n_vertices = origins.len();
+        origins.sort_unstable();
+        origins.dedup();
+        self.facts.n_coincident_vertices.saturating_sub(n_vertices - origins.len())
     }
 
     /// Polygons that could not be split.
-    fn unsplit(positions: Vec<[f64; 3]>, n_read: [usize; 2], faults: Vec<Fault>) -> Self {
+    fn unsplit(positions: &[[f64; 3]], n_polygons: usize, faults: Vec<Fault>) -> Self {
         let mut facts = Facts::default();
-        [facts.n_vertices, facts.n_faces] = n_read;
-        Self {
-            soup: TriangleSoup { positions, faces: Vec::new() },
-            facts,
-            faults,
-            is_repairable: false,
-            repairs: Vec::new(),
-            vertex_origin: None,
-            face_origin: Vec::new(),
-        }
+        (facts.n_vertices, facts.n_faces) = (positions.len(), n_polygons);
+        let soup = TriangleSoup { positions: positions.to_vec(), faces: Vec::new() };
+        Self { soup, facts, faults, ..Self::default() }
     }
 }
 
-/// The faults of the input that repairs have left: those of the kinds that are still there.
-fn still_there(before: Vec<Fault>, after: &[Fault]) -> Vec<Fault> {
-    let remains =
-        |fault: &Fault| after.iter().any(|left| discriminant(left) == discriminant(fault));
-    before.into_iter().filter(remains).collect()
+fn n_merged(into: &[u32]) -> usize {
+    into.iter().zip(0u32..).filter(|(into, v)| **into != *v).count()
 }
 
-fn coincidence_note(facts: &Facts) -> Option<String> {
-    let count = facts.n_coincident_vertices;
-    (count > 0 && !facts.is_closed()).then(|| {
-        let vertices = counted(count, "vertex");
-        format!("{vertices} at the place of another; the surface is not joined there")
-    })
+fn weld_note(count: usize, tolerance: f64, weld: Weld) -> String {
+    let place = match tolerance > 0.0 {
+        true => format!("within {} of another", rounded(tolerance)),
+        false => "in the place of another".into(),
+    };
+    let reason = match weld {
+        Weld::Soups => "; the faces shared next to none",
+        _ => "",
+    };
+    match count {
+        0 => format!("no vertex is {place}"),
+        n => format!("merged {} {place}{reason}", counted(n, "vertex")),
+    }
 }
 
 fn triangulation_notes(notes: &TriangulationNotes) -> Vec<String> {

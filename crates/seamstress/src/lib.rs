@@ -95,7 +95,7 @@ pub use finding::listing;
 pub use finding::{Elements, Finding, Severity};
 #[cfg(feature = "io")]
 pub use given::MapFile;
-pub use inspection::{Inspection, SurfaceOptions};
+pub use inspection::{Inspection, SurfaceOptions, Weld};
 pub use integer::{GridReport, IntegerGridMap, IntegerMapReport};
 #[doc(hidden)]
 pub use map::Described;

@@ -9,6 +9,7 @@ use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 #[cfg(feature = "io")]
 use crate::words::counted;
+use seamstress_mesh::Face;
 use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
@@ -92,6 +93,8 @@ pub struct QuadReport {
     pub vertices: usize,
     /// Cells that the boundary cuts, left out.
     pub trimmed: usize,
+    /// Components of the surface, counted from 0 in the order of its report, in which no cell fits whole.
+    pub components_without_quads: Vec<u32>,
     /// Copies made of vertices at which quads met in a point only.
     pub split_vertices: usize,
     /// Whether they are an oriented manifold.
@@ -174,8 +177,13 @@ impl Default for ExtractionOptions {
 }
 
 impl QuadReport {
-    fn new(extraction: &Extraction, connectivity: Result<&QuadConnectivity, &QuadFaults>) -> Self {
+    fn new(
+        surface: &Surface,
+        extraction: &Extraction,
+        connectivity: Result<&QuadConnectivity, &QuadFaults>,
+    ) -> Self {
         Self {
+            components_without_quads: surface.components_without(&extraction.sources),
             count: extraction.mesh.quads().len(),
             vertices: extraction.mesh.positions().len(),
             trimmed: extraction.trimmed,
@@ -307,7 +315,7 @@ impl Surface {
                 components: Some(solution.components),
                 map,
                 features: start.features.map(|features| features.report),
-                quads: QuadReport::new(&extraction, Ok(&made.connectivity)),
+                quads: QuadReport::new(self, &extraction, Ok(&made.connectivity)),
                 mended: Some(shaped.0),
                 orientation: Some(shaped.1),
             };
@@ -351,7 +359,7 @@ impl Surface {
                 true => Some(self.shape(&mut extraction, &options.shape, &kept)?),
                 false => None,
             };
-            let quads = QuadReport::new(&extraction, connectivity.as_ref());
+            let quads = QuadReport::new(self, &extraction, connectivity.as_ref());
             let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
             let report = QuadMeshReport {
                 seamstress: VERSION,
@@ -371,6 +379,19 @@ impl Surface {
             Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
         });
         made.map_err(|error| error.of(self.input()))
+    }
+
+    /// The components that none of some points lies on.
+    fn components_without(&self, points: &[SurfacePoint]) -> Vec<u32> {
+        // Each of them has been a mesh as part of the whole.
+        let components = seamstress_mesh::components::components(self.mesh()).unwrap_or_default();
+        let mut has_points = vec![false; self.faces().len()];
+        for point in points {
+            has_points[point.face as usize] = true;
+        }
+        let is_empty = |faces: &[Face]| !faces.iter().any(|face| has_points[face.at()]);
+        let empty = components.iter().zip(0u32..).filter(|(c, _)| is_empty(&c.faces));
+        empty.map(|(_, number)| number).collect()
     }
 
     /// Untangles and smooths quads, which must be a manifold; says what moved, and how they lie to the surface.
@@ -413,7 +434,14 @@ impl Surface {
             ManifoldError::NoManifold { faults, faces } => no_manifold_of(&faults)
                 .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
                 .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
-            other => Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}")),
+            other => {
+                let error =
+                    Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}"));
+                error.with_hint(match self.report().coincident_vertices {
+                    0 => "try more quads",
+                    _ => "vertices in one place are not joined: `weld` joins them",
+                })
+            }
         }
     }
 

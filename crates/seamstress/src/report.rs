@@ -40,7 +40,7 @@ pub struct SurfaceReport {
     pub euler_characteristic: i64,
     /// The pieces connected across edges, in order of their first faces.
     pub components: Vec<ComponentFactsReport>,
-    /// Vertices in the place of another one.
+    /// Vertices in the place of another one, not counting the copies that repairs have made.
     pub coincident_vertices: usize,
     /// Smallest and largest coordinates.
     pub bounding_box: Option<[[f64; 3]; 2]>,
@@ -56,6 +56,12 @@ pub struct SurfaceReport {
     #[serde(serialize_with = "some_number")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Number>"))]
     pub min_angle: Option<f64>,
+    /// Vertices that were merged into another on reading.
+    pub welded_vertices: usize,
+    /// The distance within which they were, mesh units, if any were looked for.
+    pub weld_tolerance: Option<f64>,
+    /// Edges of more than two faces that were cut apart, by vertices of the input.
+    pub junction_edges: Vec<[u32; 2]>,
     /// What was changed or left out on reading.
     pub notes: Vec<String>,
     /// What is wrong but does not keep it from being a surface.
@@ -83,6 +89,9 @@ impl SurfaceReport {
             min_edge_length: facts.min_edge_length,
             max_edge_length: facts.max_edge_length,
             min_angle: facts.min_angle,
+            welded_vertices: 0,
+            weld_tolerance: None,
+            junction_edges: Vec::new(),
             notes: Vec::new(),
             warnings: Vec::new(),
             repairs: Vec::new(),

@@ -1,10 +1,10 @@
 //! What a guest may rely on: surfaces, errors with their elements, contexts, ids of the input.
 
-#![allow(clippy::unwrap_used, reason = "a test, with helpers")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test, with helpers")]
 
 use seamstress::{
     CancelToken, Context, ErrorCategory, Features, Inspection, MapOptions, QuadOptions, Stage,
-    Surface, SurfaceOptions,
+    Surface, SurfaceOptions, Weld,
 };
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
@@ -87,6 +87,140 @@ fn ids_of_the_input_are_kept_through_polygons_and_repairs() {
     assert_eq!(surface.positions().len(), 7);
     assert_eq!(surface.input_vertex(6), Some(6));
     assert_eq!((surface.input_vertex(7), surface.input_face(5)), (None, None));
+}
+
+/// A flat grid of `n` by `n` unit squares, every corner a vertex of its own and moved by up to `noise`.
+fn unwelded_grid(n: u32, noise: f64) -> (Vec<[f64; 3]>, Vec<[u32; 4]>) {
+    let mut positions = Vec::new();
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        for [x, y] in [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]] {
+            let wave = noise * (positions.len() as f64 * 1.7).sin();
+            positions.push([f64::from(x) + wave, f64::from(y), wave]);
+        }
+    }
+    let quads = (0..n * n).map(|q| [0, 1, 2, 3].map(|k| 4 * q + k)).collect();
+    (positions, quads)
+}
+
+#[test]
+fn soups_are_welded_and_say_so() {
+    for noise in [0.0, 1e-6] {
+        let (positions, quads) = unwelded_grid(5, noise);
+        let open = |weld| {
+            let options = SurfaceOptions::default().weld(weld);
+            Inspection::of_polygons(&positions, &quads, &options)
+        };
+        for weld in [Weld::Soups, Weld::Auto, Weld::Within(1e-3)] {
+            let inspection = open(weld);
+            let report = inspection.report();
+            assert_eq!(
+                (report.vertices, report.components.len(), report.welded_vertices),
+                (36, 1, 64)
+            );
+            assert!(report.notes.iter().any(|note| note.starts_with("merged 64 vertices")));
+            let surface = inspection.surface().unwrap();
+            // Edges by any of the names that their ends had: 1 of the first quad is 0 of the sixth.
+            let features = |edge| surface.features(&Features::edges([edge])).unwrap();
+            assert_eq!(features([1, 2]).edges(), features([20, 23]).edges());
+        }
+        assert_eq!(open(Weld::Off).report().components.len(), 25);
+        let exact = if noise > 0.0 { 25 } else { 1 };
+        assert_eq!(open(Weld::Within(0.0)).report().components.len(), exact);
+    }
+}
+
+#[test]
+fn components_without_quads_are_named() {
+    // A square of 8 by 8, and a triangle far smaller than a cell.
+    let positions =
+        [[0, 0], [8, 0], [8, 8], [0, 8]].map(|[x, y]| [f64::from(x), f64::from(y), 0.0]);
+    let small = [[20.0, 0.0, 0.0], [20.1, 0.0, 0.0], [20.0, 0.1, 0.0]];
+    let positions = [positions.as_slice(), &small].concat();
+    let surface = Surface::from_triangles(&positions, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]).unwrap();
+    let quads = surface.quad_mesh(&QuadOptions::count(60)).unwrap();
+    assert_eq!(quads.report().quads.components_without_quads, [1]);
+}
+
+/// What repairs make of polygons.
+fn repaired<P: AsRef<[u32]>>(positions: &[[f64; 3]], polygons: &[P]) -> (Vec<String>, Surface) {
+    let options = SurfaceOptions::default().repair(true);
+    let inspection = Inspection::of_polygons(positions, polygons, &options);
+    (inspection.report().repairs.clone(), inspection.surface().unwrap())
+}
+
+/// The corners of a unit cube, x fastest.
+fn corners_of_a_cube() -> Vec<[f64; 3]> {
+    (0..8u8).map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1].map(f64::from)).collect()
+}
+
+const CUBE: [[u32; 4]; 6] =
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+#[test]
+fn polygons_given_twice_are_dropped_whatever_corner_they_begin_with() {
+    let cube = corners_of_a_cube();
+    for again in [[3, 1, 0, 2], [1, 3, 2, 0], [0, 2, 3, 1]] {
+        let polygons = [CUBE.as_slice(), &[again]].concat();
+        let refused = Surface::from_polygons(&cube, &polygons).unwrap_err();
+        assert_eq!(refused.hint(), Some("all of them can be repaired: add `repair`"));
+        let (repairs, surface) = repaired(&cube, &polygons);
+        let [repair] = &repairs[..] else { panic!("{repairs:?}") };
+        assert!(repair.starts_with("dropped face 6, "), "{repair}");
+        assert_eq!((surface.faces().len(), surface.report().boundary_loops), (12, 0));
+    }
+}
+
+#[test]
+fn repeated_corners_and_edges_of_no_length_are_mended() {
+    let mut cube = corners_of_a_cube();
+    // The lid as two triangles, one given as a quad; a copy of corner 0 beside it in one side.
+    cube.push(cube[0]);
+    let mut polygons: Vec<Vec<u32>> = CUBE.iter().map(|quad| quad.to_vec()).collect();
+    polygons[1] = vec![4, 5, 7, 7];
+    polygons.push(vec![4, 7, 6]);
+    polygons[0] = vec![8, 0, 2, 3, 1];
+    polygons[2] = vec![8, 1, 5, 4, 0];
+    let (repairs, surface) = repaired(&cube, &polygons);
+    let expected = [
+        "made one of vertices 0, 8, joined by sides of length zero",
+        "left 4 corners of face 0; the others repeated them",
+        "left 3 corners of face 1; the others repeated them",
+        "left 4 corners of face 2; the others repeated them",
+    ];
+    assert_eq!(repairs, expected);
+    let report = surface.report();
+    assert_eq!((report.vertices, report.faces, report.boundary_loops), (8, 12, 0));
+    assert_eq!(report.genus, Some(0));
+}
+
+#[test]
+fn edges_of_more_faces_are_cut_and_kept_as_junctions() {
+    // A cube with a wall inside, which divides it in two.
+    let mut positions = corners_of_a_cube();
+    positions.extend([[0.5, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.0, 1.0], [0.5, 1.0, 1.0]]);
+    let (a, b, c, d) = (8, 9, 10, 11);
+    let polygons = [
+        [0, 2, b, a],
+        [a, b, 3, 1],
+        [4, c, d, 6],
+        [c, 5, 7, d],
+        [0, a, c, 4],
+        [a, 1, 5, c],
+        [2, 6, d, b],
+        [b, d, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [a, c, d, b],
+    ];
+    let (_, surface) = repaired(&positions, &polygons);
+    let report = surface.report();
+    let mut junctions = report.junction_edges.clone();
+    junctions.sort_unstable();
+    assert_eq!(junctions, [[8, 9], [8, 10], [9, 11], [10, 11]]);
+    // The box, and the wall by itself: both have the curve on them.
+    assert_eq!((report.components.len(), report.boundary_loops), (2, 1));
+    let curve = surface.features(&Features::edges(junctions)).unwrap();
+    assert_eq!((curve.edges().len(), curve.report().boundary_edges), (8, 4));
 }
 
 #[test]

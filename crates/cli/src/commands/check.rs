@@ -6,7 +6,7 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::{Failure, Status};
 use crate::output::{Kind, Plan};
 use crate::summary;
-use crate::text::{counted, row};
+use crate::text::{as_options, counted, row};
 use seamstress::{
     CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Severity,
     Surface, SurfaceOptions, Verdict, listing,
@@ -239,6 +239,7 @@ impl Command for CheckArgs {
             "seamstress": seamstress::VERSION,
             "options": {
                 "repair": self.surface.repair,
+                "weld": self.surface.weld,
                 "tolerance": options.tolerance,
                 "features": options.features,
                 "alignment_tolerance": options.alignment_tolerance,
@@ -276,7 +277,7 @@ impl Command for CheckArgs {
         let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
         rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
         let notes = &inspection.report().notes;
-        rows.extend(notes.iter().map(|note| row("note", note)));
+        rows.extend(notes.iter().map(|note| row("note", &as_options(note))));
         let repairs = &inspection.report().repairs;
         rows.extend(repairs.iter().map(|repair| row("repair", repair)));
         for (severity, label) in [(Severity::Warning, "warning"), (Severity::Error, "fault")] {

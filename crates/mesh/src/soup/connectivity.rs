@@ -17,7 +17,7 @@ impl Side {
     }
 
     /// Whether it runs from the smaller to the larger vertex.
-    fn is_forward(self, faces: &[[u32; 3]]) -> bool {
+    pub(super) fn is_forward(self, faces: &[[u32; 3]]) -> bool {
         faces[self.face() as usize][(self.corner % 3) as usize] == self.edge[0]
     }
 

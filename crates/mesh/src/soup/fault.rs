@@ -185,6 +185,34 @@ impl Fault {
         }
         self
     }
+
+    /// The same fault with its vertices renamed, such as by
+    /// [`Repaired::vertex_origin`](super::Repaired::vertex_origin).
+    #[must_use]
+    pub fn with_vertices_renamed(mut self, rename: impl Fn(u32) -> u32) -> Self {
+        match &mut self {
+            Self::NonFiniteCoordinate { vertex }
+            | Self::RepeatedVertex { vertex, .. }
+            | Self::NonManifoldVertex { vertex, .. }
+            | Self::UnreferencedVertex { vertex } => *vertex = rename(*vertex),
+            Self::NonManifoldEdge { vertices: edge, .. }
+            | Self::InconsistentOrientation { edge, .. }
+            | Self::NonOrientable { edge, .. }
+            | Self::ZeroLengthEdge { vertices: edge } => {
+                *edge = edge.map(rename);
+                edge.sort_unstable();
+            }
+            Self::NoFaces
+            | Self::TooManyFaces { .. }
+            | Self::TooManyVertices { .. }
+            | Self::TooFewCorners { .. }
+            | Self::IndexOutOfRange { .. }
+            | Self::DuplicateFace { .. }
+            | Self::OppositeFace { .. }
+            | Self::ZeroAreaFace { .. } => {}
+        }
+        self
+    }
 }
 
 /// Longest list of elements written out in a message.
@@ -262,6 +290,15 @@ mod tests {
         assert_eq!(halved(corner), "face 4 uses vertex 6 more than once");
         let bowtie = Fault::NonManifoldVertex { vertex: 8, fans: 2 };
         assert_eq!(bowtie.clone().with_faces_renamed(|_| 0), bowtie);
+    }
+
+    #[test]
+    fn vertices_are_renamed_and_the_ends_of_edges_stay_in_order() {
+        let edge = Fault::ZeroLengthEdge { vertices: [1, 2] };
+        let renamed = edge.with_vertices_renamed(|v| [0, 9, 4][v as usize]);
+        assert_eq!(renamed, Fault::ZeroLengthEdge { vertices: [4, 9] });
+        let face = Fault::ZeroAreaFace { face: 1 };
+        assert_eq!(face.clone().with_vertices_renamed(|_| 0), face);
     }
 
     #[test]

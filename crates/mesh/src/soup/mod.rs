@@ -2,7 +2,8 @@
 //!
 //! A [`TriangleSoup`] promises nothing. [`triangulate`] makes one from polygons, [`check`] lists
 //! everything that keeps it from being an oriented manifold, and [`repair`] undoes what can be
-//! undone without moving or merging a vertex. No function here changes its input silently: each
+//! undone without moving or merging a vertex. Before, [`weld`] or [`collapse`] say which vertices of
+//! the polygons are to be one, and [`merge`] makes them so. No function here changes its input silently: each
 //! returns a record of what it found or did.
 //!
 //! A soup without errors fits a half-edge structure keyed by directed vertex pairs: every pair
@@ -11,21 +12,27 @@
 
 mod check;
 mod connectivity;
+mod copies;
 mod ear_clipping;
 mod edges;
 mod facts;
 mod fault;
 mod geometry;
+mod merge;
 mod repair;
 mod sets;
+mod sheets;
 mod topology;
 mod triangulate;
+mod weld;
 
 pub use check::{Report, check};
 pub use facts::{ComponentFacts, Facts};
 pub use fault::{Fault, Severity};
+pub use merge::{Merged, merge};
 pub use repair::{Repair, Repaired, repair};
 pub use triangulate::{Triangulation, TriangulationNotes, polygon_faults, triangulate};
+pub use weld::{collapse, is_unwelded, weld, weld_tolerance};
 
 /// The most faces a soup may have: each has three sides and may need three more on the boundary,
 /// all numbered by `u32`.

@@ -1,23 +1,34 @@
-//! Repairs that neither move nor merge a vertex.
+//! Repairs that move no vertex.
 
 use super::check::{crowded_faces, referenced, repeated};
 use super::connectivity::{Connectivity, Twin, twins};
 use super::fault::list;
+use super::sheets::{Junction, cuts};
 use super::{MAX_FACES, MAX_VERTICES, TriangleSoup};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// One thing [`repair`] did. Faces and vertices are those of the soup given, except for
-/// `copies`.
+/// One thing that [`merge`](super::merge) or [`repair`] did. Faces and vertices are those of the
+/// polygons or the soup given, except for `copies`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Repair {
-    /// Dropped a face that used a vertex more than once.
-    DroppedRepeatedVertexFace {
+    /// Made one vertex of those that sides of length zero join.
+    CollapsedSides {
+        /// The vertices; the first stays.
+        vertices: Vec<u32>,
+    },
+    /// Left out corners of a face that say nothing, such as one repeated after itself.
+    ReducedFace {
         /// The face.
         face: u32,
-        /// The vertex.
-        vertex: u32,
+        /// Its corners that are left.
+        corners: usize,
+    },
+    /// Dropped a face that had fewer than three corners, or came to have them.
+    DroppedDegenerateFace {
+        /// The face.
+        face: u32,
     },
     /// Dropped a face with the vertices and orientation of an earlier one.
     DroppedDuplicateFace {
@@ -40,6 +51,22 @@ pub enum Repair {
         /// The faces turned over.
         faces: Vec<u32>,
     },
+    /// Cut an edge of more than two faces apart, so that each sheet along it is a surface.
+    CutEdge {
+        /// Ends of the edge.
+        vertices: [u32; 2],
+        /// All its faces, in increasing order.
+        faces: Vec<u32>,
+        /// The number of sheets.
+        sheets: usize,
+    },
+    /// Cut a piece open that no orientation fits, such as a Möbius band.
+    CutOpen {
+        /// Lowest face of the piece.
+        face: u32,
+        /// The edges cut.
+        edges: Vec<[u32; 2]>,
+    },
     /// Gave each fan of faces at a vertex a vertex of its own, in the same place.
     SplitVertex {
         /// The vertex; its first fan keeps it.
@@ -57,8 +84,15 @@ pub enum Repair {
 impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::DroppedRepeatedVertexFace { face, vertex } => {
-                write!(f, "dropped face {face}, which used vertex {vertex} more than once")
+            Self::CollapsedSides { vertices } => {
+                let vertices = counted(vertices, "vertex", "vertices");
+                write!(f, "made one of {vertices}, joined by sides of length zero")
+            }
+            Self::ReducedFace { face, corners } => {
+                write!(f, "left {corners} corners of face {face}; the others repeated them")
+            }
+            Self::DroppedDegenerateFace { face } => {
+                write!(f, "dropped face {face}, which has fewer than 3 different corners")
             }
             Self::DroppedDuplicateFace { face, first } => {
                 write!(f, "dropped face {face}, a copy of face {first}")
@@ -69,6 +103,20 @@ impl fmt::Display for Repair {
             Self::Reoriented { faces } => {
                 write!(f, "turned over {}", counted(faces, "face", "faces"))
             }
+            Self::CutEdge { vertices: [a, b], faces, sheets } => {
+                let sheets = match sheets {
+                    1 => "1 sheet".into(),
+                    n => format!("{n} sheets"),
+                };
+                write!(f, "cut edge {a}-{b} apart: {} faces in {sheets}", faces.len())
+            }
+            Self::CutOpen { face, edges } => {
+                let edges = match edges.len() {
+                    1 => "1 edge".into(),
+                    n => format!("{n} edges"),
+                };
+                write!(f, "cut the piece of face {face} open along {edges}, to orient it")
+            }
             Self::SplitVertex { vertex, copies } => {
                 let n = copies.len() + 1;
                 write!(f, "split vertex {vertex} into {n}, one for each fan of faces")
@@ -78,6 +126,41 @@ impl fmt::Display for Repair {
                 write!(f, "dropped {vertices} in no face")
             }
         }
+    }
+}
+
+impl Repair {
+    /// The same with other names for faces and vertices, except for `copies`.
+    #[must_use]
+    pub fn renamed(mut self, face: impl Fn(u32) -> u32, vertex: impl Fn(u32) -> u32) -> Self {
+        let all = |elements: &mut Vec<u32>, name: &dyn Fn(u32) -> u32| {
+            elements.iter_mut().for_each(|element| *element = name(*element));
+            elements.dedup();
+        };
+        match &mut self {
+            Self::CollapsedSides { vertices } | Self::DroppedUnreferencedVertices { vertices } => {
+                all(vertices, &vertex);
+            }
+            Self::ReducedFace { face: f, .. } | Self::DroppedDegenerateFace { face: f } => {
+                *f = face(*f);
+            }
+            Self::DroppedDuplicateFace { face: f, first }
+            | Self::DroppedOppositeFace { face: f, first } => {
+                (*f, *first) = (face(*f), face(*first));
+            }
+            Self::Reoriented { faces } => all(faces, &face),
+            Self::CutEdge { vertices, faces, .. } => {
+                *vertices = vertices.map(vertex);
+                // Two triangles of one polygon may meet there.
+                faces.iter_mut().for_each(|f| *f = face(*f));
+            }
+            Self::CutOpen { face: f, edges } => {
+                *f = face(*f);
+                edges.iter_mut().for_each(|edge| *edge = edge.map(&vertex));
+            }
+            Self::SplitVertex { vertex: v, .. } => *v = vertex(*v),
+        }
+        self
     }
 }
 
@@ -98,19 +181,22 @@ pub struct Repaired {
     pub vertex_origin: Vec<u32>,
     /// For each face of `soup` the face it was.
     pub face_origin: Vec<u32>,
+    /// The edges of more than two faces that were cut apart, by the vertices that their ends were, in
+    /// increasing order.
+    pub junctions: Vec<[u32; 2]>,
 }
 
 /// Repairs what can be repaired without moving or merging a vertex.
 ///
 /// Drops faces that repeat a vertex, copies of faces, and the later of a face and its reverse
 /// where that brings all their edges down to two faces; orients each component consistently by
-/// turning over as few faces as possible; splits vertices where several fans of faces meet; and
+/// turning over as few faces as possible; cuts edges of more than two faces apart into sheets, and
+/// components open that no orientation fits; splits vertices where several fans of faces meet; and
 /// drops vertices in no face. Faces and vertices that stay keep their order, copies of vertices
 /// come last.
 ///
-/// What is left is for [`check`](super::check()) to say: edges of more than two faces, components
-/// that no orientation fits, and coordinates that are not finite stay. A soup with an index out of
-/// range, or with more elements than can be numbered, is returned as it is.
+/// What is left is for [`check`](super::check()) to say: coordinates that are not finite stay. A soup
+/// with an index out of range, or with more elements than can be numbered, is returned as it is.
 #[must_use]
 pub fn repair(soup: TriangleSoup) -> Repaired {
     let (n_vertices, n_faces) = (soup.positions.len(), soup.faces.len());
@@ -119,6 +205,7 @@ pub fn repair(soup: TriangleSoup) -> Repaired {
         repairs: Vec::new(),
         vertex_origin: (0..n_vertices as u32).collect(),
         face_origin: (0..n_faces as u32).collect(),
+        junctions: Vec::new(),
     };
     let is_missing = |&vertex: &u32| vertex as usize >= n_vertices;
     let too_large = n_faces > MAX_FACES || n_vertices > MAX_VERTICES;
@@ -128,6 +215,7 @@ pub fn repair(soup: TriangleSoup) -> Repaired {
     work.drop_faces();
     work.orient();
     work.drop_vertices();
+    work.cut();
     work.split_vertices();
     work
 }
@@ -162,9 +250,9 @@ impl Repaired {
         let faces = &self.soup.faces;
         let mut live = vec![true; faces.len()];
         for (&triple, face) in faces.iter().zip(0u32..) {
-            if let Some(vertex) = repeated(triple) {
+            if repeated(triple).is_some() {
                 live[face as usize] = false;
-                self.repairs.push(Repair::DroppedRepeatedVertexFace { face, vertex });
+                self.repairs.push(Repair::DroppedDegenerateFace { face });
             }
         }
         let (reverses, copies): (Vec<_>, Vec<_>) =
@@ -236,35 +324,59 @@ impl Repaired {
         self.repairs.push(Repair::DroppedUnreferencedVertices { vertices: dropped });
     }
 
+    /// Cuts sheets apart and open, and orients them.
+    fn cut(&mut self) {
+        let Some(cuts) = cuts(&self.soup) else { return };
+        let was = |vertices: [u32; 2]| vertices.map(|v| self.vertex_origin[v as usize]);
+        let face_was = |&face: &u32| self.face_origin[face as usize];
+        for (face, edges) in &cuts.opened {
+            let edges = edges.iter().copied().map(was).collect();
+            self.repairs.push(Repair::CutOpen { face: face_was(face), edges });
+        }
+        for Junction { edge, faces, sheets } in &cuts.junctions {
+            let (vertices, faces) = (was(*edge), faces.iter().map(face_was).collect());
+            self.repairs.push(Repair::CutEdge { vertices, faces, sheets: *sheets });
+            self.junctions.push(vertices);
+        }
+        self.separate(&cuts.fans);
+        self.orient();
+    }
+
     /// Gives every fan but the first of each vertex a copy of it.
     fn split_vertices(&mut self) {
-        let faces = self.soup.faces.clone();
-        let fans = Connectivity::new(&faces, &vec![true; faces.len()]).fans();
-        let n_vertices = self.soup.positions.len();
-        // The fan that keeps each vertex, and the copies made of it in order of their fans.
-        let mut keeper = vec![None; n_vertices];
-        let mut copy_of_fan = vec![0; 3 * faces.len()];
-        let mut copies = vec![Vec::new(); n_vertices];
-        for (&vertex, corner) in faces.iter().flatten().zip(0u32..) {
-            let fan = fans[corner as usize];
-            let v = vertex as usize;
-            if fan == *keeper[v].get_or_insert(fan) {
-                continue;
-            }
-            if fan == corner {
-                let copy = self.soup.positions.len() as u32;
-                self.soup.positions.push(self.soup.positions[v]);
-                self.vertex_origin.push(self.vertex_origin[v]);
-                copy_of_fan[fan as usize] = copy;
-                copies[v].push(copy);
-            }
-            self.soup.faces[(corner / 3) as usize][(corner % 3) as usize] =
-                copy_of_fan[fan as usize];
-        }
-        for (v, copies) in copies.into_iter().enumerate().filter(|(_, copies)| !copies.is_empty()) {
-            let vertex = self.vertex_origin[v];
+        let faces = &self.soup.faces;
+        let fans = Connectivity::new(faces, &vec![true; faces.len()]).fans();
+        for (vertex, copies) in self.separate(&fans) {
             self.repairs.push(Repair::SplitVertex { vertex, copies });
         }
+    }
+
+    /// Gives every one of the fans at a vertex but its first a copy of it, in order of the fans.
+    /// Returns what the vertices were that are copied, and their copies.
+    fn separate(&mut self, fans: &[u32]) -> Vec<(u32, Vec<u32>)> {
+        let n_vertices = self.soup.positions.len();
+        let mut keeper = vec![None; n_vertices];
+        let mut copy_of_fan = vec![0; fans.len()];
+        let mut copies = vec![Vec::new(); n_vertices];
+        for (vertex, &fan) in self.soup.faces.as_flattened_mut().iter_mut().zip(fans) {
+            let v = *vertex as usize;
+            match keeper[v] {
+                None => keeper[v] = Some(fan),
+                Some(keeper) if keeper == fan => {}
+                Some(_) => {
+                    if copy_of_fan[fan as usize] == 0 {
+                        let copy = self.soup.positions.len() as u32;
+                        self.soup.positions.push(self.soup.positions[v]);
+                        self.vertex_origin.push(self.vertex_origin[v]);
+                        copy_of_fan[fan as usize] = copy;
+                        copies[v].push(copy);
+                    }
+                    *vertex = copy_of_fan[fan as usize];
+                }
+            }
+        }
+        let split = copies.into_iter().zip(&self.vertex_origin);
+        split.filter(|(copies, _)| !copies.is_empty()).map(|(copies, &v)| (v, copies)).collect()
     }
 }
 

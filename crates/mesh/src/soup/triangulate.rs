@@ -1,5 +1,6 @@
 //! Splitting polygons into triangles.
 
+use super::copies::{Copy, copies};
 use super::ear_clipping::clip_ears;
 use super::edges::Edges;
 use super::fault::Fault;
@@ -43,6 +44,9 @@ pub struct TriangulationNotes {
 /// nothing is valid the polygon becomes the first fan without such a diagonal, at worst the fan
 /// from the first corner, and is listed in the notes.
 ///
+/// A polygon that copies an earlier one becomes the same triangles, and so does one that reverses it
+/// where other polygons share their sides: triangles then tell that one of the two is too many.
+///
 /// # Errors
 /// All polygons that have fewer than three corners or refer to a missing vertex, those of more
 /// than three corners that repeat a vertex, and counts too large to number. The `face` of a fault
@@ -60,10 +64,15 @@ pub fn triangulate<'a>(
     if polygons.iter().any(|polygon| polygon.len() > 3) {
         edges.add_sides(&polygons);
     }
+    let copies = copies(&polygons);
     let mut result = Triangulation::default();
     for (&polygon, id) in polygons.iter().zip(0u32..) {
         if let &[a, b, c] = polygon {
             result.push([a, b, c], id);
+            continue;
+        }
+        if let Some(&copy) = copies.get(&id) {
+            result.push_copy(copy, id, polygon.len());
             continue;
         }
         let split = split(positions, polygon, &edges);
@@ -80,6 +89,16 @@ impl Triangulation {
     fn push(&mut self, face: [u32; 3], polygon: u32) {
         self.faces.push(face);
         self.polygon_of_face.push(polygon);
+    }
+
+    /// The triangles of a polygon that copies or reverses an earlier one.
+    fn push_copy(&mut self, copy: Copy, polygon: u32, corners: usize) {
+        let start = self.polygon_of_face.partition_point(|&of| of < copy.first);
+        for face in start..start + corners - 2 {
+            let [a, b, c] = self.faces[face];
+            self.push(if copy.reversed { [a, c, b] } else { [a, b, c] }, polygon);
+        }
+        *if corners == 4 { &mut self.notes.quads } else { &mut self.notes.larger } += 1;
     }
 }
 
@@ -238,6 +257,22 @@ mod tests {
         let report = check(&soup);
         assert_eq!(report.faults, []);
         assert_eq!(report.facts.genus(), Some(0));
+    }
+
+    #[test]
+    fn a_copy_becomes_the_same_triangles() {
+        let done = split(&SQUARE, &[&[0, 1, 2, 3], &[2, 3, 0, 1], &[1, 2, 3, 0]]);
+        assert_eq!(done.faces, [[0, 1, 2], [0, 2, 3]].repeat(3));
+        assert_eq!(done.polygon_of_face, [0, 0, 1, 1, 2, 2]);
+        assert_eq!((done.notes.quads, done.notes.other_choice), (3, 0));
+    }
+
+    #[test]
+    fn a_reverse_beside_other_polygons_becomes_the_same_triangles() {
+        let mut positions = SQUARE.to_vec();
+        positions.push([0.5, 0.5, -1.0]);
+        let done = split(&positions, &[&[1, 0, 4], &[0, 1, 2, 3], &[1, 0, 3, 2]]);
+        assert_eq!(done.faces[1..], [[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
     }
 
     #[test]

@@ -166,7 +166,7 @@ const ERRORS: [Case; 25] = [
     ("broken-file", 1, "check broken.obj"),
     ("three-faces", 1, "map fan.obj -o a.obj"),
     ("faults", 1, "check fan.obj"),
-    ("repair-fails", 1, "map fan.obj -o a.obj --repair"),
+    ("repair-fails", 1, "map touch.obj -o a.obj --repair"),
     ("no-map", 1, "check l.obj l.obj"),
     ("not-this-mesh", 1, "check disk.obj map.obj"),
     ("open-seams", 1, "check l.obj open.obj"),
@@ -183,6 +183,7 @@ fn messages() {
         "fan.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n",
     );
+    folder.write("touch.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3 1 4 5\n");
     folder.write("wrong.sing", "4 1\n0 1\n");
     folder.write("pairs.txt", "# an edge, no edge, no vertex\n0 1\n0 35\n0 40\n");
     folder.expect(0, &["map", "l.obj", "-o", "map.obj", "--threads", "1"]);

@@ -40,7 +40,7 @@ fn a_sound_mesh_is_left_alone() {
 fn faces_that_say_nothing_new_are_dropped() {
     let done = repaired(soup(4, &[[0, 1, 2], [1, 1, 2], [1, 2, 0], [2, 1, 3]]));
     let expected = [
-        Repair::DroppedRepeatedVertexFace { face: 1, vertex: 1 },
+        Repair::DroppedDegenerateFace { face: 1 },
         Repair::DroppedDuplicateFace { face: 2, first: 0 },
     ];
     assert_eq!(done.repairs, expected);
@@ -68,16 +68,14 @@ fn reverses_of_neighbours_are_dropped_together() {
 }
 
 #[test]
-fn a_flap_of_two_opposite_faces_stays() {
+fn a_flap_of_two_opposite_faces_is_cut_off() {
     // It hangs on edge 0-1 of a tetrahedron; one of its two faces would be a fin.
     let flap = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0], [0, 1, 4], [1, 0, 4]];
     let done = repaired(soup(5, &flap));
-    assert_eq!(done.repairs, []);
-    let expected = [
-        Fault::OppositeFace { face: 5, first: 4 },
-        Fault::NonManifoldEdge { vertices: [0, 1], faces: vec![0, 1, 4, 5] },
-    ];
-    assert_eq!(check(&done.soup).faults, expected);
+    let faces = vec![0, 1, 4, 5];
+    assert_eq!(done.repairs, [Repair::CutEdge { vertices: [0, 1], faces, sheets: 2 }]);
+    let report = check(&done.soup);
+    assert_eq!((report.faults, report.facts.components.len()), (vec![], 2));
 }
 
 #[test]
@@ -136,24 +134,104 @@ fn spare_vertices_and_split_ones_keep_their_old_names() {
 }
 
 #[test]
-fn what_needs_a_decision_stays() {
+fn sheets_at_an_edge_are_those_that_turn_the_least() {
+    // A floor of two triangles along edge 0-1, and a wall on it.
+    let mut room = soup(5, &[[0, 1, 2], [1, 0, 4], [1, 0, 3]]);
+    room.positions =
+        vec![[0.0; 3], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, -1.0, 0.0], [0.5, -0.1, 1.0]];
+    let done = repaired(room);
+    let faces = vec![0, 1, 2];
+    assert_eq!(done.repairs, [Repair::CutEdge { vertices: [0, 1], faces, sheets: 2 }]);
+    assert_eq!(done.junctions, [[0, 1]]);
+    let report = check(&done.soup);
+    assert_eq!((report.faults, report.facts.components.len()), (vec![], 2));
+    // The wall has ends of its own.
+    assert_eq!(done.soup.faces, [[0, 1, 2], [5, 6, 4], [1, 0, 3]]);
+    assert_eq!(done.vertex_origin, [0, 1, 2, 3, 4, 1, 0]);
+}
+
+#[test]
+fn solids_that_touch_along_an_edge_come_apart_as_solids() {
+    // Two tetrahedra on opposite sides of the edge 0-1: all turns are a right angle, and those of
+    // the solids are convex.
+    let mut solids = soup(
+        6,
+        &[[0, 1, 2], [1, 0, 3], [0, 2, 3], [2, 1, 3], [0, 1, 4], [1, 0, 5], [0, 4, 5], [4, 1, 5]],
+    );
+    solids.positions = vec![
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.5],
+        [0.0, 1.0, 0.5],
+        [-1.0, 0.0, 0.5],
+        [0.0, -1.0, 0.5],
+    ];
+    // Seen from outside.
+    for face in &mut solids.faces {
+        face.swap(1, 2);
+    }
+    let done = repaired(solids);
+    let report = check(&done.soup);
+    assert_eq!((report.faults, report.facts.components.len()), (vec![], 2));
+    assert!(report.facts.is_closed());
+    assert_eq!(done.junctions, [[0, 1]]);
+}
+
+#[test]
+fn faces_that_disagree_at_an_edge_still_make_surfaces() {
     let fins = soup(5, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]);
-    assert_eq!(repaired(fins.clone()).soup, fins);
+    let done = repaired(fins);
+    assert_eq!(check(&done.soup).faults, []);
+}
+
+#[test]
+fn a_moebius_band_is_cut_open_across() {
     let moebius = soup(5, &[[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 0], [4, 0, 1]]);
-    assert_eq!(repaired(moebius.clone()).soup, moebius);
+    let done = repaired(moebius);
+    let [Repair::CutOpen { face: 0, edges }, ..] = &done.repairs[..] else {
+        panic!("{:?}", done.repairs)
+    };
+    assert_eq!(edges.len(), 1);
+    let report = check(&done.soup);
+    assert_eq!((report.faults, report.facts.boundary_loops()), (vec![], 1));
+    assert_eq!((done.junctions.len(), done.soup.positions.len()), (0, 7));
+}
+
+#[test]
+fn closed_surfaces_of_one_side_are_cut_open() {
+    // The projective plane of six vertices.
+    let plane = [
+        [0, 1, 2],
+        [0, 2, 3],
+        [0, 3, 4],
+        [0, 4, 5],
+        [0, 5, 1],
+        [1, 2, 4],
+        [2, 3, 5],
+        [3, 4, 1],
+        [4, 5, 2],
+        [5, 1, 3],
+    ];
+    let done = repaired(soup(6, &plane));
+    let report = check(&done.soup);
+    assert_eq!(report.faults, []);
+    assert_eq!((report.facts.boundary_loops(), report.facts.genus()), (1, Some(0)));
+}
+
+#[test]
+fn a_sheet_that_comes_back_to_an_edge_by_both_ends_is_parted_there() {
+    // The fan around vertex 0 passes edge 0-1 twice, and so does that around 1: a closed strip of
+    // two loops, pinched along the edge.
+    let loops = [[0, 1, 2], [1, 0, 3], [0, 2, 3], [2, 1, 3], [0, 1, 3], [1, 0, 2]];
+    let done = repaired(soup(4, &loops));
+    assert_eq!(check(&done.soup).errors().count(), 0);
+}
+
+#[test]
+fn what_names_no_vertex_stays() {
     let faulty = soup(4, &[[0, 1, 9], [0, 1, 2], [0, 1, 2]]);
     let done = repair(faulty.clone());
     assert_eq!(done.soup, faulty);
     let expected = Fault::IndexOutOfRange { face: 0, index: 9, n_vertices: 4 };
     assert_eq!(check(&done.soup).faults[0], expected);
-}
-
-#[test]
-fn messages_name_their_elements() {
-    let turned = Repair::Reoriented { faces: vec![3] };
-    assert_eq!(turned.to_string(), "turned over face 3");
-    let split = Repair::SplitVertex { vertex: 7, copies: vec![20, 21] };
-    assert_eq!(split.to_string(), "split vertex 7 into 3, one for each fan of faces");
-    let dropped = Repair::DroppedUnreferencedVertices { vertices: vec![1, 2] };
-    assert_eq!(dropped.to_string(), "dropped vertices 1, 2 in no face");
 }
