@@ -118,11 +118,8 @@ impl<'a> SeamlessLayout<'a> {
     fn reduce(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
         self.problem.factorize(SHIFT)?;
         let matrix = schur_complement(&self.problem, &self.space)?;
-        let turning = match self.aligned.is_empty() {
-            true => turned(&self.coordinates),
-            false => vec![0.0; self.coordinates.len()],
-        };
-        Ok(ReducedEnergy::new(&matrix, &turning)?)
+        let turnable = self.aligned.is_empty().then_some(self.coordinates.as_slice());
+        Ok(ReducedEnergy::new(&matrix, turnable)?)
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
@@ -192,9 +189,4 @@ fn grid_needs(
         })
         .collect();
     needs
-}
-
-/// Real and imaginary parts by turns, turned by a quarter.
-fn turned(parts: &[f64]) -> Vec<f64> {
-    parts.chunks(2).flat_map(|z| [-z[1], z[0]]).collect()
 }

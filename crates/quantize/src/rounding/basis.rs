@@ -1,13 +1,12 @@
 //! Integer steps that cost little.
 
-use crate::linear::{Dense, Row, dot};
+use crate::linear::{Dense, Row};
 
 /// A basis of the integer vectors, reduced in pairs: no vector gets shorter by taking multiples of another one
-/// from it, in the energy with a weight on turning the whole map.
+/// from it, in the energy.
 ///
 /// Moving a cone alone changes many coordinates at once where relations couple them; the reduced basis has
-/// such steps as vectors of their own. Turning costs no energy, and long integer vectors come close to it:
-/// the weight keeps them out.
+/// such steps as vectors of their own.
 #[derive(Debug, Clone)]
 pub struct ReducedBasis {
     /// Coordinate and step.
@@ -16,20 +15,16 @@ pub struct ReducedBasis {
     pub matrix: Dense,
 }
 
-/// Weight of a unit step of turning, against the mean diagonal of the energy.
-const TURNING: f64 = 1.0;
 /// Passes over all pairs at most.
 const MOST_SWEEPS: usize = 50;
 /// A fall of the energy that counts, as a share.
 const GAIN: f64 = 1e-9;
 
 impl ReducedBasis {
-    /// Reduces the unit vectors in an energy `x' P x`, given what turning the map does to the coordinates, up
-    /// to a factor; zero where it cannot be turned.
-    pub fn new(energy: &Dense, turning: &[f64]) -> Self {
+    /// Reduces the unit vectors in an energy `x' P x`.
+    pub fn new(energy: &Dense) -> Self {
         let n = energy.order;
         let mut matrix = energy.clone();
-        let mut weighted = with_weight(energy, turning);
         let mut vectors = vec![0; n * n];
         (0..n).for_each(|k| vectors[k * n + k] = 1);
         for _ in 0..MOST_SWEEPS {
@@ -37,12 +32,11 @@ impl ReducedBasis {
             for i in 0..n {
                 for j in (0..n).filter(|&j| j != i) {
                     let (own, shared, other) =
-                        (weighted.row(i)[i], weighted.row(i)[j], weighted.row(j)[j]);
+                        (matrix.row(i)[i], matrix.row(i)[j], matrix.row(j)[j]);
                     let q = (shared / other).round();
                     if q != 0.0 && (q * other - 2.0 * shared) * q < -GAIN * own {
                         subtract(&mut vectors, n, i, j, q as i64);
                         matrix.subtract(i, j, q);
-                        weighted.subtract(i, j, q);
                         is_reduced = false;
                     }
                 }
@@ -57,21 +51,6 @@ impl ReducedBasis {
         };
         Self { vectors: (0..n).map(sparse).collect(), matrix }
     }
-}
-
-/// The energy with a weight on steps along a direction.
-fn with_weight(energy: &Dense, direction: &[f64]) -> Dense {
-    let n = energy.order;
-    let trace = energy.trace();
-    let square = dot(direction, direction);
-    let mut weighted = energy.clone();
-    if square > 0.0 {
-        let weight = TURNING * trace / n as f64 / square;
-        for (k, value) in weighted.values.iter_mut().enumerate() {
-            *value += weight * direction[k / n] * direction[k % n];
-        }
-    }
-    weighted
 }
 
 /// Takes `q` times vector j from vector i.
@@ -114,11 +93,9 @@ mod tests {
 
     #[test]
     fn pairs_are_reduced_and_the_matrix_is_theirs() {
-        let turning = [0.0, 1.0, -2.0, 0.5, 0.0, 3.0, -1.0];
         for seed in 0..20 {
             let energy = skewed(7, seed);
-            let weighted = with_weight(&energy, &turning);
-            let ReducedBasis { vectors, matrix } = ReducedBasis::new(&energy, &turning);
+            let ReducedBasis { vectors, matrix } = ReducedBasis::new(&energy);
             let dense = |row: &Row| {
                 let mut x = vec![0.0; 7];
                 row.iter().for_each(|&(k, c)| x[k] = c as f64);
@@ -129,7 +106,7 @@ mod tests {
                 for (j, v) in vectors.iter().enumerate() {
                     let off = product(&energy, u, v) - matrix.row(i)[j];
                     assert!(off.abs() < 1e-9, "seed {seed}");
-                    let (shared, own) = (product(&weighted, u, v), product(&weighted, v, v));
+                    let (shared, own) = (product(&energy, u, v), product(&energy, v, v));
                     assert!(i == j || shared.abs() <= (0.5 + 1e-6) * own, "seed {seed}");
                 }
             }
@@ -141,23 +118,13 @@ mod tests {
     #[test]
     fn they_are_a_basis() {
         for seed in 0..20 {
-            let vectors = ReducedBasis::new(&skewed(5, seed), &[0.0; 5]).vectors;
+            let vectors = ReducedBasis::new(&skewed(5, seed)).vectors;
             let mut rows = vec![vec![0i64; 5]; 5];
             for (row, vector) in rows.iter_mut().zip(&vectors) {
                 vector.iter().for_each(|&(k, c)| row[k] = c);
             }
             assert_eq!(determinant(rows).abs(), 1, "seed {seed}");
         }
-    }
-
-    #[test]
-    fn turning_does_not_lead_far() {
-        // Energy only across the golden section, which integer vectors come close to without end.
-        let across = [1.0, -1.618_033_988_749_895];
-        let turning = [-across[1], across[0]];
-        let values = (0..4).map(|k| across[k / 2] * across[k % 2]).collect();
-        let ReducedBasis { vectors, .. } = ReducedBasis::new(&Dense { order: 2, values }, &turning);
-        assert!(vectors.iter().flatten().all(|&(_, c)| c.abs() <= 2), "{vectors:?}");
     }
 
     /// By expansion along the first row.
