@@ -14,6 +14,7 @@ pub mod features;
 pub mod ids;
 mod mesh;
 mod metric;
+pub mod refine;
 pub mod soup;
 
 pub use components::Component;

@@ -21,4 +21,5 @@ pub use extract::{ExtractError, ExtractOptions, Extraction, extract};
 pub use manifold::{ManifoldError, ManifoldQuads, manifold_quads};
 pub use mesh::{QuadMesh, QuadMeshError};
 pub use smooth::{SmoothError, SmoothOptions, Smoothed, smooth};
+pub use surface::locate;
 pub use untangle::{UntangleOptions, Untangling, untangle};

@@ -1,5 +1,6 @@
 //! A triangulated surface to project to.
 
+use crate::extract::SurfacePoint;
 use crate::vector::{Point, add, angle, cross, scale, sub, unit, vector};
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{TriMesh as Bvh, Triangle, TrianglePointLocation};
@@ -78,6 +79,24 @@ impl Surface {
 
 fn edge(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
+}
+
+/// The places on a surface nearest to points; the error says why it cannot be searched.
+///
+/// # Errors
+/// Where there is no face.
+pub fn locate(
+    positions: &[[f64; 3]],
+    faces: &[[u32; 3]],
+    points: impl Iterator<Item = [f64; 3]>,
+) -> Result<Vec<SurfacePoint>, String> {
+    let surface = Surface::new(positions, faces)?;
+    let place = |at: Point| {
+        let (_, (face, location)) =
+            surface.bvh.project_local_point_and_get_location(vector(at), false);
+        SurfacePoint { face, barycentric: corner_weights(location) }
+    };
+    Ok(points.map(place).collect())
 }
 
 /// The point of a triangle nearest to a point, and the weights of its corners there.

@@ -34,8 +34,11 @@ const REFINEMENT: f64 = 1.1;
 const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 /// Roundings on one grid, each but the first with the cuts that the one before has taught.
 const MOST_ROUNDINGS: usize = 14;
-/// Cells of a closed component at a minimum, however coarse the grid asked for: a torus can have five, a sphere six.
-const FEWEST_CELLS: f64 = 5.0;
+/// Cells of a closed component at a minimum, however coarse the grid asked for: those of a cube with two by two on each
+/// side, so that what is smaller than a cell keeps a shape.
+const FEWEST_CELLS: f64 = 24.0;
+/// Cells of an open component at a minimum.
+const FEWEST_OPEN_CELLS: f64 = 4.0;
 /// The finish with the integers held: a few Newton steps, since the path ends near the minimum.
 const POLISH: NewtonOptions = NewtonOptions { max_iterations: 20, tolerance: 1e-5 };
 /// Slack of the triangle inequality, in mean edge lengths, of the metric for meshes with triangles that have no area:
@@ -139,7 +142,11 @@ impl<'a> ComponentSearch<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<Placement, QuantizationFailure> {
         let is_greedy = self.options.rounding == RoundingMethod::Greedy;
-        let fewest = if is_greedy || self.piece.mesh.has_boundary() { 1.0 } else { FEWEST_CELLS };
+        let fewest = match self.piece.mesh.has_boundary() {
+            _ if is_greedy => 1.0,
+            true => FEWEST_OPEN_CELLS,
+            false => FEWEST_CELLS,
+        };
         let asked = cell.min(self.layout.side() / fewest.sqrt()) / self.layout.unit;
         let finer = REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k));
         let n_shares = match &self.coarsest {

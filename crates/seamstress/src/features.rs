@@ -318,6 +318,16 @@ impl FeatureCurves {
         }
     }
 
+    /// These curves on a finer mesh of their surface.
+    pub(crate) fn on(&self, finer: &Surface, edges: EdgeSet) -> Self {
+        let mut sources = self.report.sources.clone();
+        if self.report.align_boundary {
+            let source = FeatureSource::Boundary.to_string();
+            sources.push(FeatureSourceReport { source, edges: self.report.boundary_edges });
+        }
+        Self::new(finer, edges, sources)
+    }
+
     /// The edges by their ends, vertices of the surface.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.pairs

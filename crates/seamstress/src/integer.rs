@@ -3,7 +3,7 @@
 use crate::certify::CertifyOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::{AlignedFeatures, FeatureReport, Features, edges_of};
+use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, Features, edges_of};
 use crate::finding::Elements;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, GridSize, IntegerMapOptions};
@@ -156,7 +156,8 @@ impl Surface {
         options.validate()?;
         let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
-            let start = self.make_seamless(options, watcher)?;
+            let asked = self.features_for(&options.map.features, options.size)?;
+            let start = self.make_seamless(asked, options, watcher)?;
             let solution = self.make_integer(&start, options, watcher)?;
             Ok(self.integer_grid_map(solution, start.features, options))
         });
@@ -208,13 +209,14 @@ impl Surface {
     /// The seamless map to start from, by the direct method, its cones those of a grid of this size.
     pub(crate) fn make_seamless(
         &self,
+        asked: FeatureCurves,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessStart, Error> {
         let mut settings = options.map.to_method();
         let edge_length = options.size.to_quantize().cell(self.metric().side());
         settings.purpose = method::Purpose::Quads { edge_length };
-        let made = self.make_map(&options.map, settings, watcher)?;
+        let made = self.make_map(asked, &options.map, settings, watcher)?;
         Ok(SeamlessStart { map: made.inner().clone(), features: made.features().cloned() })
     }
 

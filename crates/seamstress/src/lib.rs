@@ -70,6 +70,7 @@ mod pictures;
 mod polygons;
 mod quads;
 mod quality;
+mod refined;
 mod report;
 #[cfg(feature = "schema")]
 mod schema;

@@ -2,9 +2,9 @@
 
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
-use crate::features::{AlignedFeatures, FeatureReport, Features};
+use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, Features};
 use crate::finding::{Elements, listing};
-use crate::options::{GridSize, MapOptions};
+use crate::options::MapOptions;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
@@ -274,24 +274,22 @@ impl Surface {
     /// Levi 2021.
     pub fn parametrize(&self, options: &MapOptions) -> Result<SeamlessMap, Error> {
         options.validate()?;
-        let made =
-            self.context().run(|watcher| self.make_map(options, options.to_method(), watcher));
+        let options = &options.or_features(Features::none());
+        let made = self.context().run(|watcher| {
+            let asked = self.features(&options.features)?;
+            self.make_map(asked, options, options.to_method(), watcher)
+        });
         made.map_err(|error| error.of(self.input()))
     }
 
-    /// The map by the direct method with these settings.
+    /// The map by the direct method with these settings, aligned to these features.
     pub(crate) fn make_map(
         &self,
+        asked: FeatureCurves,
         options: &MapOptions,
         settings: method::MapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessMap, Error> {
-        let options = &options.or_features(Features::none());
-        let size = match settings.purpose {
-            method::Purpose::Quads { edge_length } => GridSize::EdgeLength(edge_length),
-            method::Purpose::Texture => GridSize::default(),
-        };
-        let asked = self.features_for(&options.features, size)?;
         let mut observe = |progress| watcher.observe(progress);
         let solution =
             make_aligned_map(self.mesh(), self.positions(), &asked.edges, &settings, &mut observe)

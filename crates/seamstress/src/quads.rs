@@ -5,6 +5,7 @@ use crate::features::{FeatureReport, Features};
 use crate::finding::Elements;
 use crate::integer::GridReport;
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
+use crate::refined::Workpiece;
 use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 #[cfg(feature = "io")]
@@ -43,6 +44,10 @@ pub struct QuadMeshReport {
     pub options: Option<QuadOptions>,
     /// The surface.
     pub input: SurfaceReport,
+    /// Triangles of the finer mesh of the same surface that quads were made on, where features lacked room or triangles
+    /// area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finer_triangles: Option<usize>,
     /// The grid asked for and the one made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<GridReport>,
@@ -293,28 +298,34 @@ impl Surface {
                 map: options.map.clone(),
                 ..IntegerMapOptions::default()
             };
-            let start = self.make_seamless(&integer, watcher)?;
-            let (kept, settings) = (start.kept(self.mesh()), integer.to_quantize());
+            let edge_length = options.size.to_quantize().cell(self.metric().side());
+            let asked = self.features_for(&options.map.features, options.size)?;
+            let work = Workpiece::new(self, asked, edge_length)?;
+            let surface = &work.surface;
+            let start = surface.make_seamless(work.curves.clone(), &integer, watcher)?;
+            let (kept, settings) = (start.kept(surface.mesh()), integer.to_quantize());
             let mut observe = |progress| watcher.observe(progress);
-            let (mesh, positions, map) = (self.mesh(), self.positions(), &start.map);
+            let (mesh, positions, map) = (surface.mesh(), surface.positions(), &start.map);
             let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
-                .map_err(|cause| self.no_manifold(cause, &integer))?;
+                .map_err(|cause| surface.no_manifold(cause, &integer))?;
             watcher.enter(Stage::Shaping)?;
             let kept = start.features.as_ref().map_or(&[][..], |features| &features.kept);
             let mut extraction = made.extraction;
+            let shaped = surface.shape(&mut extraction, &options.shape, kept)?;
+            work.bring_back(&mut extraction)?;
             let map = ExtractedMap::new(&extraction);
-            let shaped = self.shape(&mut extraction, &options.shape, kept)?;
             let solution = made.quantization;
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: Some(options.clone()),
                 input: self.report().clone(),
+                finer_triangles: work.n_triangles(),
                 grid: Some(GridReport::new(options.size, &solution)),
                 distortion: Some(Distortion::from(&solution.distortion)),
                 integer_certificate: Some(solution.map.certificate().clone()),
                 components: Some(solution.components),
                 map,
-                features: start.features.map(|features| features.report),
+                features: start.features.map(|features| work.feature_report(&features)),
                 quads: QuadReport::new(self, &extraction, Ok(&made.connectivity)),
                 mended: Some(shaped.0),
                 orientation: Some(shaped.1),
@@ -365,6 +376,7 @@ impl Surface {
                 seamstress: VERSION,
                 options: None,
                 input: self.report().clone(),
+                finer_triangles: None,
                 grid: None,
                 distortion: None,
                 integer_certificate: None,

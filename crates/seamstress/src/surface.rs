@@ -5,6 +5,7 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
+use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::{Violation, Violations};
 use std::fmt;
@@ -100,6 +101,35 @@ impl Surface {
             inner.report.file = input.map(str::to_owned);
         }
         self
+    }
+
+    /// A finer mesh of the same surface, whose first vertices are those of this one, and each of whose faces lies in one
+    /// of this one.
+    ///
+    /// # Errors
+    /// A fault of this program.
+    pub(crate) fn refined(
+        &self,
+        positions: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        face_origin: &[u32],
+    ) -> Result<Self, Error> {
+        let mesh = TriMesh::from_faces(positions.len(), &faces).map_err(|cause| {
+            let text = format!("a finer mesh of the surface is none: {cause}");
+            Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
+        })?;
+        let metric = Metric::from_positions(&mesh, &positions);
+        let vertices = (0..self.positions().len() as u32).map(|v| self.input_vertex(v));
+        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
+        let parts = Parts {
+            input: self.inner.parts.input.clone(),
+            vertex_origin: vertices.collect(),
+            face_origin: face_origin.iter().map(origin).collect(),
+            soup: TriangleSoup { positions, faces },
+            ..Parts::default()
+        };
+        let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
+        Ok(Self { inner, context: self.context.clone() })
     }
 
     /// Positions, #V by 3, mesh units.

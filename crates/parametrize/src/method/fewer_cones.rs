@@ -14,6 +14,8 @@ const MAP_PRICE: f64 = 0.0006;
 /// the cells around it whatever their size, and takes room from its neighbours.
 const QUAD_PRICE: f64 = 0.0015;
 const QUAD_CELLS: f64 = 4.0;
+/// A component has no fewer cells than this, however small it is: its cells are smaller then.
+const FEWEST_CELLS: f64 = 24.0;
 
 /// Bounds on the log scale that clean-up tries, loosest first, and on the deviation of indices.
 const MAP_BOUNDS: [(f64, f64); 2] = [(f64::INFINITY, 1.5), (0.35, 1.5)];
@@ -44,7 +46,7 @@ impl CleanUpTerms {
         let (usual_price, bounds, count, growth) = match options.purpose {
             Purpose::Texture => (MAP_PRICE, &MAP_BOUNDS[..], ConeCount::Cones, MAP_GROWTH),
             Purpose::Quads { edge_length } => {
-                let cell = (edge_length / domain.surface.side()).powi(2);
+                let cell = (edge_length / domain.surface.side()).powi(2).min(1.0 / FEWEST_CELLS);
                 let price = QUAD_PRICE.max(QUAD_CELLS * cell);
                 (price, &QUAD_BOUNDS[..], ConeCount::Quarters, QUAD_GROWTH)
             }

@@ -79,8 +79,9 @@ pub struct Extraction {
 pub struct QuadCone {
     /// The vertex of the quad mesh.
     pub vertex: u32,
-    /// The vertex of the source.
-    pub source: u32,
+    /// The vertex of the source; none where quads were made on a finer mesh of it, with a cone at a point added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<u32>,
     /// Its index in quarters: an interior vertex has 4 less this many quads.
     pub index: i32,
 }
@@ -215,9 +216,11 @@ fn compact(quads: &[[u32; 4]], n_points: usize) -> (Vec<u32>, Vec<[u32; 4]>) {
 
 fn cones(source: &Source<'_>, numbers: &[u32]) -> Vec<QuadCone> {
     let cone = |(vertex, &number): (usize, &u32)| match source.points.sites[number as usize] {
-        Site::Vertex(v) if source.map.indices[v] != 0 => {
-            Some(QuadCone { vertex: vertex as u32, source: v.0, index: source.map.indices[v] })
-        }
+        Site::Vertex(v) if source.map.indices[v] != 0 => Some(QuadCone {
+            vertex: vertex as u32,
+            source: Some(v.0),
+            index: source.map.indices[v],
+        }),
         _ => None,
     };
     numbers.iter().enumerate().filter_map(cone).collect()

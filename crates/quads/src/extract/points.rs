@@ -29,6 +29,14 @@ pub struct SurfacePoint {
     pub barycentric: [f64; 3],
 }
 
+impl SurfacePoint {
+    /// Where it is in space.
+    pub fn position(&self, positions: &[[f64; 3]], faces: &[[u32; 3]]) -> [f64; 3] {
+        let corners = faces[self.face as usize].map(|v| positions[v as usize]);
+        [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
+    }
+}
+
 /// All grid points: those at vertices first, then on edges, then in faces.
 pub(super) struct GridPoints {
     pub(super) sites: Vec<Site>,

@@ -23,7 +23,12 @@ impl Surface {
             let settings = options.to_method();
             let start = options.start.read(self)?;
             if matches!(start, Start::Mesh) {
-                let made = self.make_map(&options.map, settings, watcher)?;
+                let made = self.make_map(
+                    self.features(&options.map.features)?,
+                    &options.map,
+                    settings,
+                    watcher,
+                )?;
                 return Ok(LaidOut::Certified(Box::new(made)));
             }
             let mut observe = |progress| watcher.observe(progress);

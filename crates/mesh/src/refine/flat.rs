@@ -1,0 +1,142 @@
+//! The flat parts of a surface.
+
+use super::{EdgeSet, Face, FaceData, Halfedge, TriMesh, VertexData};
+use crate::metric::{cross, dot, norm};
+use std::collections::VecDeque;
+
+/// Faces that lie in one plane and hang together across edges that are no features.
+#[derive(Debug)]
+pub(super) struct FlatParts {
+    /// The part of each face.
+    pub(super) of_face: FaceData<u32>,
+    /// The faces of each part, ascending, in order of the first.
+    pub(super) faces: Vec<Vec<Face>>,
+}
+
+/// Vertices this far from a plane are in it, as a part of the longest side of the face that gives it: coordinates
+/// in files often have seven digits.
+const FLAT: f64 = 1e-6;
+/// A face with a height below this part of its longest side has no area to speak of, and no plane.
+const NO_AREA: f64 = 1e-9;
+/// Angles below this at a feature are those of needles, radians: five degrees.
+const NEEDLE: f64 = 0.087;
+
+/// A face in space.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// Its unit normal; zero without area.
+    normal: [f64; 3],
+    area: f64,
+    longest: f64,
+    /// Side of that length.
+    longest_side: usize,
+}
+
+impl Shape {
+    fn new(corners: [[f64; 3]; 3]) -> Self {
+        let sides = [0, 1, 2].map(|k| sub(corners[(k + 1) % 3], corners[k]));
+        let lengths = sides.map(norm);
+        let longest_side = (0..3).fold(0, |k, i| if lengths[i] > lengths[k] { i } else { k });
+        let longest = lengths[longest_side];
+        let doubled = cross(sides[0], sides[1]);
+        let size = norm(doubled);
+        let has_area = size > NO_AREA * longest * longest;
+        let normal = if has_area { doubled.map(|x| x / size) } else { [0.0; 3] };
+        Self { normal, area: 0.5 * size, longest, longest_side }
+    }
+
+    fn has_area(&self) -> bool {
+        self.normal != [0.0; 3]
+    }
+}
+
+impl FlatParts {
+    pub(super) fn new(mesh: &TriMesh, positions: &[[f64; 3]], features: &EdgeSet) -> Self {
+        let shapes: FaceData<Shape> =
+            mesh.faces().map(|f| Shape::new(corners(mesh, positions, f))).collect();
+        let mut order: Vec<Face> = mesh.faces().collect();
+        order.sort_by(|&f, &g| shapes[g].area.total_cmp(&shapes[f].area).then(f.cmp(&g)));
+        let mut is_taken = FaceData::filled(mesh.n_faces(), false);
+        let mut faces: Vec<Vec<Face>> = Vec::new();
+        for seed in order {
+            if std::mem::replace(&mut is_taken[seed], true) {
+                continue;
+            }
+            let (plane, origin) = (shapes[seed], positions[mesh.origin(seed.halfedge(0)).at()]);
+            let is_in_plane = |h: Halfedge| {
+                let apex = positions[mesh.origin(h.prev()).at()];
+                dot(sub(apex, origin), plane.normal).abs() <= FLAT * plane.longest
+            };
+            let (mut members, mut queue) = (vec![seed], VecDeque::from([seed]));
+            while let Some(f) = queue.pop_front().filter(|_| plane.has_area()) {
+                let sides = f.halfedges().into_iter().filter(|&h| !features.contains(h));
+                for twin in sides.filter_map(|h| mesh.twin(h)) {
+                    let (g, shape) = (twin.face(), shapes[twin.face()]);
+                    let faces_alike = match shape.has_area() {
+                        true => dot(shape.normal, plane.normal) > 0.5,
+                        // It is a part of the longest of its sides.
+                        false => shape.longest_side == twin.side(),
+                    };
+                    if !is_taken[g] && faces_alike && is_in_plane(twin) {
+                        is_taken[g] = true;
+                        members.push(g);
+                        queue.push_back(g);
+                    }
+                }
+            }
+            members.sort_unstable();
+            faces.push(members);
+        }
+        faces.sort_unstable();
+        let mut of_face = FaceData::filled(mesh.n_faces(), 0);
+        for (part, members) in faces.iter().enumerate() {
+            members.iter().for_each(|&f| of_face[f] = part as u32);
+        }
+        Self { of_face, faces }
+    }
+
+    /// Parts in which features lack room, or faces area.
+    pub(super) fn in_need(
+        &self,
+        mesh: &TriMesh,
+        positions: &[[f64; 3]],
+        features: &EdgeSet,
+        is_on_curve: &VertexData<bool>,
+    ) -> Vec<bool> {
+        let joins_curves = |&h: &Halfedge| {
+            let on_curves = [mesh.origin(h), mesh.tip(h)].iter().all(|&v| is_on_curve[v]);
+            on_curves && !features.contains(h)
+        };
+        let needs = |faces: &Vec<Face>| {
+            faces.iter().any(|&f| {
+                let sides = f.halfedges();
+                let n_features = sides.iter().filter(|&&h| features.contains(h)).count();
+                let corners = corners(mesh, positions, f);
+                let is_needle = |&h: &Halfedge| {
+                    faces.len() > 1
+                        && is_on_curve[mesh.origin(h)]
+                        && angle(corners, h.side()) < NEEDLE
+                };
+                let has_area = Shape::new(corners).has_area();
+                n_features > 1
+                    || sides.iter().any(joins_curves)
+                    || sides.iter().any(is_needle)
+                    || (faces.len() > 1 && !has_area)
+            })
+        };
+        self.faces.iter().map(needs).collect()
+    }
+}
+
+pub(super) fn corners(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 3] {
+    mesh.face_vertices(f).map(|v| positions[v.at()])
+}
+
+fn angle(corners: [[f64; 3]; 3], k: usize) -> f64 {
+    let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
+    norm(cross(a, b)).atan2(dot(a, b))
+}
+
+pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}

@@ -1,0 +1,159 @@
+//! A finer mesh of the same surface.
+//!
+//! Feature curves need room: where a triangle has two feature edges, or an edge joins two curves without being on
+//! one, no map can turn as a corner asks for. And triangles without area are in the way of everything. Here flat
+//! parts of the surface are triangulated anew, with points added inside and on edges; no point leaves the surface, and
+//! what is curved stays as it is.
+
+mod flat;
+mod triangulate;
+
+use crate::features::EdgeSet;
+use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, VertexData};
+use crate::mesh::TriMesh;
+use flat::FlatParts;
+use triangulate::{Part, triangulate};
+
+/// A mesh of the same surface. The vertices of the source keep their numbers and come first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// Positions, #V by 3.
+    pub positions: Vec<[f64; 3]>,
+    /// Vertices of the faces, #F by 3.
+    pub faces: Vec<[u32; 3]>,
+    /// For each face one of the source, in which its center lies.
+    pub face_origin: Vec<u32>,
+    /// The feature edges, each with the one of the source that it is a piece of.
+    pub features: Vec<FeaturePiece>,
+    /// Faces of the source that were split or joined with others.
+    pub n_changed: usize,
+}
+
+/// A piece of a feature edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FeaturePiece {
+    /// Its ends.
+    pub vertices: [u32; 2],
+    /// The ends of the source's edge.
+    pub source: [u32; 2],
+}
+
+/// Pieces of an edge that joins two feature curves, at a minimum.
+const FEWEST_PIECES: usize = 2;
+/// Pieces of an edge at most, whatever its length.
+const MOST_PIECES: f64 = 1000.0;
+
+/// A finer mesh of the same surface where features lack room or triangles have no area, with edges of about a length in
+/// mesh units there. None if all is well as it is.
+pub fn refine(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    features: &EdgeSet,
+    size: f64,
+) -> Option<Refinement> {
+    let parts = FlatParts::new(mesh, positions, features);
+    let is_on_curve = on_curves(mesh, features);
+    let needs_room = parts.in_need(mesh, positions, features, &is_on_curve);
+    if !needs_room.iter().any(|&needs| needs) {
+        return None;
+    }
+    let source = Source { mesh, positions, features, parts: &parts, is_on_curve: &is_on_curve };
+    Some(source.refined(&needs_room, size))
+}
+
+/// Vertices on feature edges.
+fn on_curves(mesh: &TriMesh, features: &EdgeSet) -> VertexData<bool> {
+    let mut is_on_curve = VertexData::filled(mesh.n_vertices(), false);
+    for &h in features.edges() {
+        is_on_curve[mesh.origin(h)] = true;
+        is_on_curve[mesh.tip(h)] = true;
+    }
+    is_on_curve
+}
+
+struct Source<'a> {
+    mesh: &'a TriMesh,
+    positions: &'a [[f64; 3]],
+    features: &'a EdgeSet,
+    parts: &'a FlatParts,
+    is_on_curve: &'a VertexData<bool>,
+}
+
+impl Source<'_> {
+    fn refined(&self, needs_room: &[bool], size: f64) -> Refinement {
+        let mut refined = Refinement {
+            positions: self.positions.to_vec(),
+            faces: Vec::new(),
+            face_origin: Vec::new(),
+            features: Vec::new(),
+            n_changed: 0,
+        };
+        let pieces = self.split_borders(needs_room, size, &mut refined.positions);
+        for (part, faces) in self.parts.faces.iter().enumerate() {
+            let is_split = |&f: &Face| f.halfedges().iter().any(|&h| !pieces[h].is_empty());
+            if !needs_room[part] && !faces.iter().any(is_split) {
+                for &f in faces {
+                    refined.faces.push(self.mesh.face_vertices(f).map(|v| v.0));
+                    refined.face_origin.push(f.0);
+                }
+                continue;
+            }
+            refined.n_changed += faces.len();
+            let size = needs_room[part].then_some(size);
+            let part = Part { source: self, faces, pieces: &pieces, size };
+            triangulate(&part, &mut refined);
+        }
+        for &h in self.features.edges() {
+            let source = [self.mesh.origin(h).0, self.mesh.tip(h).0];
+            let chain = self.chain(h, &pieces);
+            let of = |ends: &[u32]| FeaturePiece { vertices: [ends[0], ends[1]], source };
+            refined.features.extend(chain.windows(2).map(of));
+        }
+        refined
+    }
+
+    /// Points on the borders of parts that need room, for each half-edge from its origin on.
+    fn split_borders(
+        &self,
+        needs_room: &[bool],
+        size: f64,
+        positions: &mut Vec<[f64; 3]>,
+    ) -> HalfedgeData<Vec<u32>> {
+        let mut pieces = HalfedgeData::filled(self.mesh.n_halfedges(), Vec::new());
+        for h in self.mesh.edges() {
+            let twin = self.mesh.twin(h);
+            let needs = |h: Halfedge| needs_room[self.parts.of_face[h.face()] as usize];
+            if !self.is_border(h) || !(needs(h) || twin.is_some_and(needs)) {
+                continue;
+            }
+            let ends = [self.mesh.origin(h), self.mesh.tip(h)];
+            let [a, b] = ends.map(|v| self.positions[v.at()]);
+            let length = crate::metric::norm([0, 1, 2].map(|k| b[k] - a[k]));
+            let joins_curves =
+                !self.features.contains(h) && ends.iter().all(|&v| self.is_on_curve[v]);
+            let fewest = if joins_curves { FEWEST_PIECES } else { 1 };
+            let n = ((length / size).ceil().min(MOST_PIECES) as usize).max(fewest);
+            let first = positions.len() as u32;
+            for k in 1..n {
+                let t = k as f64 / n as f64;
+                positions.push([0, 1, 2].map(|k| (1.0 - t) * a[k] + t * b[k]));
+            }
+            pieces[h] = (first..positions.len() as u32).collect();
+            if let Some(twin) = twin {
+                pieces[twin] = pieces[h].iter().rev().copied().collect();
+            }
+        }
+        pieces
+    }
+
+    fn is_border(&self, h: Halfedge) -> bool {
+        let part = |h: Halfedge| self.parts.of_face[h.face()];
+        self.features.contains(h) || self.mesh.twin(h).is_none_or(|twin| part(twin) != part(h))
+    }
+
+    /// The vertices on a half-edge from its origin to its tip.
+    fn chain(&self, h: Halfedge, pieces: &HalfedgeData<Vec<u32>>) -> Vec<u32> {
+        let (from, to) = (self.mesh.origin(h).0, self.mesh.tip(h).0);
+        [&[from], pieces[h].as_slice(), &[to]].concat()
+    }
+}
