@@ -43,7 +43,7 @@ impl Workpiece {
         let Some(refinement) = refine(mesh, positions, &curves.edges, size) else {
             return Ok(Self { surface: surface.clone(), curves, refined: None });
         };
-        let Refinement { positions, faces, face_origin, features, .. } = refinement;
+        let Refinement { positions, faces, face_origin, features } = refinement;
         let finer = surface.refined(positions, faces, &face_origin)?;
         let pairs: Vec<[u32; 2]> = features.iter().map(|piece| piece.vertices).collect();
         let feature_origin =

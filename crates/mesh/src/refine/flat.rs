@@ -16,6 +16,9 @@ pub(super) struct FlatParts {
 /// Vertices this far from a plane are in it, as a part of the longest side of the face that gives it: coordinates
 /// in files often have seven digits.
 const FLAT: f64 = 1e-6;
+/// Normals of one plane have an inner product above this: they are within 2.5 degrees, which tells faces from the noise of
+/// smaller ones.
+const ALIKE: f64 = 0.999;
 /// A face with a height below this part of its longest side has no area to speak of, and no plane.
 const NO_AREA: f64 = 1e-9;
 /// Angles below this at a feature are those of needles, radians: five degrees.
@@ -73,7 +76,7 @@ impl FlatParts {
                 for twin in sides.filter_map(|h| mesh.twin(h)) {
                     let (g, shape) = (twin.face(), shapes[twin.face()]);
                     let faces_alike = match shape.has_area() {
-                        true => dot(shape.normal, plane.normal) > 0.5,
+                        true => dot(shape.normal, plane.normal) > ALIKE,
                         // It is a part of the longest of its sides.
                         false => shape.longest_side == twin.side(),
                     };

@@ -6,12 +6,14 @@
 //! what is curved stays as it is.
 
 mod flat;
+mod merge;
 mod triangulate;
 
 use crate::features::EdgeSet;
 use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, VertexData};
 use crate::mesh::TriMesh;
 use flat::FlatParts;
+use merge::Merged;
 use triangulate::{Part, triangulate};
 
 /// A mesh of the same surface. The vertices of the source keep their numbers and come first.
@@ -25,8 +27,6 @@ pub struct Refinement {
     pub face_origin: Vec<u32>,
     /// The feature edges, each with the one of the source that it is a piece of.
     pub features: Vec<FeaturePiece>,
-    /// Faces of the source that were split or joined with others.
-    pub n_changed: usize,
 }
 
 /// A piece of a feature edge.
@@ -51,14 +51,19 @@ pub fn refine(
     features: &EdgeSet,
     size: f64,
 ) -> Option<Refinement> {
-    let parts = FlatParts::new(mesh, positions, features);
-    let is_on_curve = on_curves(mesh, features);
-    let needs_room = parts.in_need(mesh, positions, features, &is_on_curve);
-    if !needs_room.iter().any(|&needs| needs) {
-        return None;
+    let Some(merged) = Merged::new(mesh, positions) else {
+        let source = Source::new(mesh, positions, features);
+        let is_any_in_need = source.needs_room.iter().any(|&needs| needs);
+        return is_any_in_need.then(|| source.refined(size));
+    };
+    let (edges, names) = merged.edges(mesh, features);
+    let mut refined = Source::new(&merged.mesh, positions, &edges).refined(size);
+    refined.face_origin.iter_mut().for_each(|f| *f = merged.face_origin[*f as usize]);
+    for piece in &mut refined.features {
+        let [a, b] = piece.source;
+        piece.source = names.get(&[a.min(b), a.max(b)]).copied().unwrap_or(piece.source);
     }
-    let source = Source { mesh, positions, features, parts: &parts, is_on_curve: &is_on_curve };
-    Some(source.refined(&needs_room, size))
+    Some(refined)
 }
 
 /// Vertices on feature edges.
@@ -71,35 +76,43 @@ fn on_curves(mesh: &TriMesh, features: &EdgeSet) -> VertexData<bool> {
     is_on_curve
 }
 
+/// A surface with its flat parts.
 struct Source<'a> {
     mesh: &'a TriMesh,
     positions: &'a [[f64; 3]],
     features: &'a EdgeSet,
-    parts: &'a FlatParts,
-    is_on_curve: &'a VertexData<bool>,
+    is_on_curve: VertexData<bool>,
+    parts: FlatParts,
+    /// Whether features lack room in a part, or faces area.
+    needs_room: Vec<bool>,
 }
 
-impl Source<'_> {
-    fn refined(&self, needs_room: &[bool], size: f64) -> Refinement {
+impl<'a> Source<'a> {
+    fn new(mesh: &'a TriMesh, positions: &'a [[f64; 3]], features: &'a EdgeSet) -> Self {
+        let parts = FlatParts::new(mesh, positions, features);
+        let is_on_curve = on_curves(mesh, features);
+        let needs_room = parts.in_need(mesh, positions, features, &is_on_curve);
+        Self { mesh, positions, features, is_on_curve, parts, needs_room }
+    }
+
+    fn refined(&self, size: f64) -> Refinement {
         let mut refined = Refinement {
             positions: self.positions.to_vec(),
             faces: Vec::new(),
             face_origin: Vec::new(),
             features: Vec::new(),
-            n_changed: 0,
         };
-        let pieces = self.split_borders(needs_room, size, &mut refined.positions);
+        let pieces = self.split_borders(size, &mut refined.positions);
         for (part, faces) in self.parts.faces.iter().enumerate() {
             let is_split = |&f: &Face| f.halfedges().iter().any(|&h| !pieces[h].is_empty());
-            if !needs_room[part] && !faces.iter().any(is_split) {
+            if !self.needs_room[part] && !faces.iter().any(is_split) {
                 for &f in faces {
                     refined.faces.push(self.mesh.face_vertices(f).map(|v| v.0));
                     refined.face_origin.push(f.0);
                 }
                 continue;
             }
-            refined.n_changed += faces.len();
-            let size = needs_room[part].then_some(size);
+            let size = self.needs_room[part].then_some(size);
             let part = Part { source: self, faces, pieces: &pieces, size };
             triangulate(&part, &mut refined);
         }
@@ -113,16 +126,11 @@ impl Source<'_> {
     }
 
     /// Points on the borders of parts that need room, for each half-edge from its origin on.
-    fn split_borders(
-        &self,
-        needs_room: &[bool],
-        size: f64,
-        positions: &mut Vec<[f64; 3]>,
-    ) -> HalfedgeData<Vec<u32>> {
+    fn split_borders(&self, size: f64, positions: &mut Vec<[f64; 3]>) -> HalfedgeData<Vec<u32>> {
         let mut pieces = HalfedgeData::filled(self.mesh.n_halfedges(), Vec::new());
         for h in self.mesh.edges() {
             let twin = self.mesh.twin(h);
-            let needs = |h: Halfedge| needs_room[self.parts.of_face[h.face()] as usize];
+            let needs = |h: Halfedge| self.needs_room[self.parts.of_face[h.face()] as usize];
             if !self.is_border(h) || !(needs(h) || twin.is_some_and(needs)) {
                 continue;
             }
