@@ -252,7 +252,14 @@ pub(crate) fn quad_rows(report: &QuadMeshReport) -> Vec<String> {
         counted(map.cones.len(), "cone"),
         map.snapping.largest_change
     );
-    let mut rows = vec![row("map", &text), row("quads", &quads.count.to_string())];
+    let mut rows = Vec::new();
+    if let Some(triangles) = report.finer_triangles {
+        let text = format!(
+            "made on {triangles} triangles of the same surface, where features lacked room"
+        );
+        rows.push(row("refined", &text));
+    }
+    rows.extend([row("map", &text), row("quads", &quads.count.to_string())]);
     if let Some(topology) = &quads.topology {
         let text = format!(
             "{}, {}, {}, Euler characteristic {}",

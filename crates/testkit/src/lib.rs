@@ -12,6 +12,7 @@ mod data;
 mod flips;
 mod integer_maps;
 mod modify;
+mod parts;
 mod patches;
 mod quads;
 mod random;
@@ -28,6 +29,7 @@ pub use integer_maps::{IntegerMap, random_voxels, squares};
 pub use modify::{
     bumpy, disjoint_union, klee, relabel, remove_faces, scale, stretch, subdivide, with_boundaries,
 };
+pub use parts::{extruded, parts, pyramid, revolved, ring, sheet};
 pub use patches::{annulus, cylinder, disk_grid, fan, graph, monkey_saddle, saddle};
 pub use quads::{QuadSoup, random_quads};
 pub use random::{random_surface, small_sphere};

@@ -106,7 +106,7 @@ fn quads_follow_the_edges_of_a_box() {
         let report =
             json(&folder.expect(0, &[&arguments[..], &["--features", "angle:40"]].concat()).stdout);
         assert_eq!(report["quads"]["irregular"]["by_valence"]["3"], 8);
-        assert_eq!(report["integer_certificate"]["isoline_edges"], 48);
+        assert_eq!(report["features"]["kept"], 48);
         let found = covered(&folder.read("q.obj"), &segments);
         assert!((found - total).abs() < 1e-6, "{found} of {total} at {quads}");
     }

@@ -7,6 +7,7 @@ use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, HasPosition, Point2, RefinementParameters,
     Triangulation,
 };
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 /// A part with its border.
@@ -126,10 +127,9 @@ impl Plane {
         let border = part.border();
         let inner = part.faces.iter().flat_map(|&f| part.source.mesh.face_vertices(f)).map(|v| v.0);
         for vertex in inner.chain(border.as_flattened().iter().copied()) {
-            if !handles.contains_key(&vertex) {
-                let site =
-                    Site { at: self.project(positions[vertex as usize]), vertex: Some(vertex) };
-                handles.insert(vertex, delaunay.insert(site).ok()?);
+            if let Entry::Vacant(new) = handles.entry(vertex) {
+                let at = self.project(positions[vertex as usize]);
+                new.insert(delaunay.insert(Site { at, vertex: Some(vertex) }).ok()?);
             }
         }
         if delaunay.num_vertices() != handles.len() {
