@@ -1,6 +1,6 @@
 //! Arguments that commands have in common.
 
-use clap::{Args, value_parser};
+use clap::Args;
 use seamstress::{FeatureSource, Features, GridSize};
 use std::path::Path;
 use std::time::Duration;
@@ -24,11 +24,11 @@ pub(crate) fn after_help(examples: &str) -> String {
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub(crate) struct RunArgs {
     /// Give up when the work is not done after this many seconds [default: no limit]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<Duration>,
 
     /// Number of threads; the result does not depend on it [default: all cores]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<u32>,
 
     /// Print the report as JSON on standard output instead of the summary
@@ -110,7 +110,7 @@ pub(crate) struct SizeArgs {
     #[arg(long, value_name = "L", value_parser = positive)]
     edge_length: Option<f64>,
 
-    /// Grid units per mesh unit
+    /// Grid units per mesh unit: the number of quads along a length of 1, the inverse of `--edge-length`
     #[arg(long, value_name = "S", value_parser = positive)]
     scale: Option<f64>,
 }
@@ -138,11 +138,25 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The longest time limit: a year. Whoever gives more wants none.
+const LONGEST: Duration = Duration::from_secs(365 * 24 * 60 * 60);
+
 fn seconds(text: &str) -> Result<Duration, String> {
     let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
-    positive
-        .and_then(|x| Duration::try_from_secs_f64(x).ok())
-        .ok_or_else(|| "expected a number of seconds larger than 0".into())
+    let time = positive.and_then(|x| Duration::try_from_secs_f64(x).ok());
+    time.filter(|&time| time <= LONGEST).ok_or_else(|| {
+        "expected a number of seconds, larger than 0 and at most a year; leave the option out for no limit".into()
+    })
+}
+
+/// The most threads.
+const MOST_THREADS: u32 = 1024;
+
+fn threads(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().filter(|count| (1..=MOST_THREADS).contains(count));
+    count.ok_or_else(|| {
+        format!("expected a number of threads, from 1 to {MOST_THREADS}; leave the option out for all cores")
+    })
 }
 
 #[cfg(test)]

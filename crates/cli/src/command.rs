@@ -3,16 +3,15 @@
 use crate::args::RunArgs;
 use crate::failure::{Failure, Status, print};
 use crate::job::{Cost, Job};
-use crate::output::{Kind, Plan, Target};
+use crate::output::{Kind, Plan, Target, is_standard_stream};
 use crate::summary;
 use crate::text::{self, as_options, listing, row};
-use seamstress::{
-    AtomicFile, Context, Error, Inspection, Surface, SurfaceOptions, listing as lines,
-};
+use seamstress::{Context, Error, Inspection, Surface, SurfaceOptions, listing as lines};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io::{self, Read};
 use std::path::Path;
+use std::time::Instant;
 
 /// A command: what it reads and writes, and the calls of the library in between.
 pub(crate) trait Command: Clone + Send + 'static {
@@ -42,7 +41,7 @@ pub(crate) trait Command: Clone + Send + 'static {
     }
 
     /// Writes a file that is neither picture nor report.
-    fn write(&self, _: &Self::Product, _: &Target, _: &mut AtomicFile) -> io::Result<()> {
+    fn write(&self, _: &Self::Product, _: &Target, _: &mut dyn io::Write) -> io::Result<()> {
         Ok(())
     }
 
@@ -76,7 +75,7 @@ impl Session {
         path: &Path,
         options: &SurfaceOptions,
     ) -> Result<Inspection, Failure> {
-        let inspection = Inspection::read(path, options)?;
+        let inspection = read_mesh(path, options)?;
         self.report_findings(&inspection);
         Ok(inspection)
     }
@@ -116,6 +115,16 @@ impl Session {
     }
 }
 
+/// Reads a mesh, from standard input where the path is `-`.
+pub(crate) fn read_mesh(path: &Path, options: &SurfaceOptions) -> Result<Inspection, Failure> {
+    if !is_standard_stream(path) {
+        return Ok(Inspection::read(path, options)?);
+    }
+    let mut content = Vec::new();
+    io::stdin().lock().read_to_end(&mut content).map_err(Failure::StandardInput)?;
+    Ok(Inspection::of_file_content(&content, path, options)?)
+}
+
 /// Warnings of each kind that are shown; the report has them all.
 const SHOWN_WARNINGS: usize = 5;
 /// Repairs that are shown; the report has them all.
@@ -126,11 +135,21 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     let run = command.run_args();
     let job = Job::new(run);
     let plan = command.plan()?;
+    if run.json && plan.writes_to_standard_output() {
+        let text = "`--json` prints the report on standard output; write the result to a file";
+        return Err(Failure::Usage(text.into()));
+    }
     let input = command.input().display().to_string();
     let (owned, session) = (command.clone(), Session { context: job.context(), quiet: run.quiet });
-    let product = job.supervise(&input, move || owned.make(&session))?;
+    let (product, pictures, drawing) = job.supervise(&input, move || {
+        let product = owned.make(&session)?;
+        let start = Instant::now();
+        let pictures = owned.pictures(&product)?;
+        Ok((product, pictures, start.elapsed().as_secs_f64()))
+    })?;
 
-    let mut pictures = command.pictures(&product)?.into_iter();
+    let drawing = (!pictures.is_empty()).then_some(("pictures", drawing));
+    let mut pictures = pictures.into_iter();
     let cost = job.cost();
     let report = report_text(command, &product, &plan, cost);
     let mut batch = plan.begin()?;
@@ -149,12 +168,12 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
             _ => command.write(&product, target, file),
         })?;
     }
-    job.check_interrupt(&input)?;
+    job.check_stopped(&input)?;
     batch.commit()?;
-    match (run.json, run.quiet) {
+    match (run.json, run.quiet || plan.writes_to_standard_output()) {
         (true, _) => print(&report)?,
         (false, true) => {}
-        (false, false) => print(&summary_text(command, &product, &plan, &cost))?,
+        (false, false) => print(&summary_text(command, &product, &plan, &cost, drawing))?,
     }
     Ok(command.status(&product))
 }
@@ -172,9 +191,18 @@ fn report_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost:
     serde_json::to_string_pretty(&value).unwrap_or_default()
 }
 
-fn summary_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: &Cost) -> String {
+fn summary_text<C: Command>(
+    command: &C,
+    product: &C::Product,
+    plan: &Plan,
+    cost: &Cost,
+    drawing: Option<(&'static str, f64)>,
+) -> String {
     let mut rows = command.summary(product);
-    rows.extend(command.stages(product).map(|stages| summary::cost_row(cost, &stages)));
+    rows.extend(command.stages(product).map(|mut stages| {
+        stages.extend(drawing);
+        summary::cost_row(cost, &stages)
+    }));
     let names = plan.targets.iter().rev().map(|target| target.path.display().to_string());
     let names: Vec<String> = names.collect();
     if !names.is_empty() {

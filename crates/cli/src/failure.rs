@@ -29,6 +29,8 @@ pub(crate) enum Failure {
     Library(Error),
     /// The command line asks for what cannot be.
     Usage(String),
+    /// Standard input cannot be read.
+    StandardInput(std::io::Error),
     /// Stopped while files were written, or for good.
     Interrupted { input: String },
     /// The work did not stop when its time was over.
@@ -58,6 +60,7 @@ impl Failure {
                 ErrorCategory::Stopped => Status::Stopped,
                 _ => Status::NoResult,
             },
+            Self::StandardInput(_) => Status::BadInput,
             Self::Usage(_) => Status::WrongUsage,
             Self::Interrupted { .. } | Self::TimeLimit { .. } => Status::Stopped,
             Self::Panicked { .. } => Status::NoResult,
@@ -85,6 +88,7 @@ impl fmt::Display for Failure {
                     None => Ok(()),
                 }
             }
+            Self::StandardInput(cause) => write!(f, "standard input cannot be read: {cause}"),
             Self::Usage(text) => f.write_str(text),
             Self::Interrupted { input } => {
                 write!(f, "{input}: stopped: interrupted\nNothing was written")

@@ -117,11 +117,14 @@ impl Job {
         }
     }
 
-    /// Fails if Ctrl-C was pressed.
-    pub(crate) fn check_interrupt(&self, input: &str) -> Result<(), Failure> {
-        match self.cancel.is_cancelled() {
-            true => Err(Failure::Interrupted { input: input.to_owned() }),
-            false => Ok(()),
+    /// Fails if Ctrl-C was pressed, or the time is over.
+    pub(crate) fn check_stopped(&self, input: &str) -> Result<(), Failure> {
+        if self.cancel.is_cancelled() {
+            return Err(Failure::Interrupted { input: input.to_owned() });
+        }
+        match self.run.time_limit.filter(|&limit| self.start.elapsed() > limit) {
+            Some(limit) => Err(Failure::TimeLimit { input: input.to_owned(), limit }),
+            None => Ok(()),
         }
     }
 
@@ -152,6 +155,15 @@ mod tests {
         });
         assert!(matches!(result, Err(Failure::TimeLimit { .. })), "{result:?}");
         assert!(start.elapsed() < Duration::from_secs(20));
+    }
+
+    #[test]
+    fn work_that_ends_too_late_counts_for_nothing() {
+        let limit = Duration::from_millis(1);
+        let job = Job::new(RunArgs { time_limit: Some(limit), ..RunArgs::default() });
+        thread::sleep(Duration::from_millis(5));
+        assert!(matches!(job.check_stopped("a"), Err(Failure::TimeLimit { .. })));
+        assert!(Job::new(RunArgs::default()).check_stopped("a").is_ok());
     }
 
     #[test]

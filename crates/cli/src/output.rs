@@ -1,9 +1,10 @@
 //! Output files: checked before the work, written after it, put in place together.
 
 use crate::failure::Failure;
+use crate::text;
 use seamstress::{AtomicFile, Error, Output};
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// What a file holds.
@@ -44,6 +45,11 @@ impl Target {
     }
 }
 
+/// Whether a path stands for standard input or standard output.
+pub(crate) fn is_standard_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 fn as_text<S: serde::Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(&path.to_string_lossy())
 }
@@ -76,8 +82,15 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Whether a result goes to standard output.
+    pub(crate) fn writes_to_standard_output(&self) -> bool {
+        self.targets.iter().any(|target| is_standard_stream(&target.path))
+    }
+
     fn refuse_clashes(&self, inputs: &[&Path]) -> Result<(), Failure> {
-        let input_ids: Vec<PathBuf> = inputs.iter().map(|input| identity(input)).collect();
+        // Standard input and standard output have one name and are two things.
+        let files = inputs.iter().filter(|input| !is_standard_stream(input));
+        let input_ids: Vec<PathBuf> = files.map(|input| identity(input)).collect();
         let mut seen: Vec<PathBuf> = self.folder.iter().map(|folder| identity(folder)).collect();
         for Target { path, .. } in &self.targets {
             let id = identity(path);
@@ -103,7 +116,8 @@ impl Plan {
             // The name is that of the folder to be made, which is not there.
             create(base)?;
         }
-        for Target { path, .. } in &self.targets {
+        let files = self.targets.iter().filter(|target| !is_standard_stream(&target.path));
+        for Target { path, .. } in files {
             let is_in_new_folder =
                 folder.is_some_and(|folder| identity(parent(path)) == identity(folder));
             if !is_in_new_folder {
@@ -157,6 +171,8 @@ fn missing(folder: &Path) -> Vec<&Path> {
 #[derive(Debug, Default)]
 pub(crate) struct Batch {
     files: Vec<AtomicFile>,
+    /// What goes to standard output.
+    standard_output: Vec<u8>,
     /// Folders and files made, in order, to be removed again.
     made_folders: Vec<PathBuf>,
     made_files: Vec<PathBuf>,
@@ -177,17 +193,21 @@ impl Batch {
     pub(crate) fn write(
         &mut self,
         path: &Path,
-        content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        if is_standard_stream(path) {
+            let written = content(&mut self.standard_output);
+            return written.map_err(|error| Failure::Usage(error.to_string()));
+        }
         let mut file = create(path)?;
         content(&mut file)
-            .and_then(|()| io::Write::flush(&mut file))
+            .and_then(|()| file.flush())
             .map_err(|error| Failure::Usage(error.to_string()))?;
         self.files.push(file);
         Ok(())
     }
 
-    /// Puts all files in place, in the order they were written.
+    /// Puts all files in place, in the order they were written, and then writes to standard output.
     ///
     /// # Errors
     /// If one cannot be put in place; the new ones before it are removed then.
@@ -200,6 +220,8 @@ impl Batch {
                 self.made_files.push(path);
             }
         }
+        text::write(&self.standard_output)
+            .map_err(|cause| Failure::Usage(format!("cannot write to standard output: {cause}")))?;
         self.made_files.clear();
         self.made_folders.clear();
         Ok(())
@@ -222,7 +244,6 @@ impl Drop for Batch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
 
     fn write(batch: &mut Batch, path: &Path) {
         let written = batch.write(path, |file| file.write_all(b"new"));

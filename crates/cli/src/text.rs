@@ -5,8 +5,13 @@ use std::io::{self, ErrorKind, Write};
 
 /// Prints lines on standard output. A reader that has gone away is no fault.
 pub(crate) fn print(text: &str) -> io::Result<()> {
+    write(format!("{text}\n").as_bytes())
+}
+
+/// Writes to standard output. A reader that has gone away is no fault.
+pub(crate) fn write(bytes: &[u8]) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    let written = writeln!(out, "{text}").and_then(|()| out.flush());
+    let written = out.write_all(bytes).and_then(|()| out.flush());
     match written {
         Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(cause),
         _ => Ok(()),

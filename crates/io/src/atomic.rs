@@ -4,7 +4,11 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use tempfile::NamedTempFile;
+
+use crate::format::is_compressed;
 
 /// A file that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -26,13 +30,38 @@ impl WriteError {
 /// A file under construction.
 ///
 /// The data goes to a temporary file in the same directory; [`AtomicFile::commit`] renames it. Without a
-/// commit the temporary file is removed and a file of the same name stays as it was. Errors name the path.
+/// commit the temporary file is removed and a file of the same name stays as it was. Data for a name that ends
+/// in `.gz` is compressed. Errors name the path.
 #[derive(Debug)]
 pub struct AtomicFile {
     path: PathBuf,
     /// Where the data goes: `path` with symbolic links followed.
     target: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: Sink,
+}
+
+/// Where data goes.
+#[derive(Debug)]
+enum Sink {
+    Plain(BufWriter<NamedTempFile>),
+    Compressed(GzEncoder<BufWriter<NamedTempFile>>),
+}
+
+impl Sink {
+    fn writer(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Plain(file) => file,
+            Self::Compressed(file) => file,
+        }
+    }
+
+    fn finish(self) -> io::Result<NamedTempFile> {
+        let file = match self {
+            Self::Plain(file) => file,
+            Self::Compressed(file) => file.finish()?,
+        };
+        file.into_inner().map_err(io::IntoInnerError::into_error)
+    }
 }
 
 impl AtomicFile {
@@ -68,11 +97,17 @@ impl AtomicFile {
             // As for any new file; the process's mask applies.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let file = builder.tempfile_in(directory).map_err(|error| fail(without_path(error)))?;
+        let file =
+            builder.tempfile_in(directory).map_err(|error| fail(in_words(directory, error)))?;
         if let Some(existing) = existing {
             file.as_file().set_permissions(existing.permissions()).map_err(fail)?;
         }
-        Ok(Self { path: path.to_owned(), target, file: BufWriter::with_capacity(1 << 16, file) })
+        let file = BufWriter::with_capacity(1 << 16, file);
+        let file = match is_compressed(path) {
+            true => Sink::Compressed(GzEncoder::new(file, Compression::default())),
+            false => Sink::Plain(file),
+        };
+        Ok(Self { path: path.to_owned(), target, file })
     }
 
     /// The path the file will have.
@@ -87,7 +122,7 @@ impl AtomicFile {
     /// If the last data cannot be written or the file cannot be renamed; nothing is left behind then.
     pub fn commit(self) -> Result<(), WriteError> {
         let Self { path, target, file } = self;
-        let file = file.into_inner().map_err(|error| WriteError::new(&path, error.into_error()))?;
+        let file = file.finish().map_err(|error| WriteError::new(&path, error))?;
         file.persist(target).map_err(|error| WriteError::new(&path, error.error))?;
         Ok(())
     }
@@ -99,22 +134,26 @@ impl AtomicFile {
 
 impl Write for AtomicFile {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        self.file.write(data).map_err(|error| self.named(&error))
+        self.file.writer().write(data).map_err(|error| self.named(&error))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush().map_err(|error| self.named(&error))
+        self.file.writer().flush().map_err(|error| self.named(&error))
     }
 }
 
 /// The system's error without the name of the temporary file, which tells the user nothing.
-fn without_path(error: io::Error) -> io::Error {
+fn in_words(directory: &Path, error: io::Error) -> io::Error {
     let kind = error.kind();
-    match kind {
-        io::ErrorKind::NotFound => io::Error::new(kind, "the directory does not exist"),
-        io::ErrorKind::PermissionDenied => io::Error::new(kind, "the directory cannot be written"),
-        _ => error,
-    }
+    let what = match kind {
+        // Such as in /proc: it is there, and takes no files.
+        io::ErrorKind::NotFound if directory.is_dir() => "the directory takes no new files",
+        io::ErrorKind::NotFound => "the directory does not exist",
+        io::ErrorKind::NotADirectory => "its directory is a file",
+        io::ErrorKind::PermissionDenied => "the directory cannot be written",
+        _ => return error,
+    };
+    io::Error::new(kind, what)
 }
 
 #[cfg(test)]
@@ -146,6 +185,26 @@ mod tests {
         file.write_all(b"half").unwrap();
         drop(file);
         assert_eq!(entries(directory.path()), 0);
+    }
+
+    #[test]
+    fn a_name_in_gz_compresses() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.obj.gz");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".repeat(50) + "f 1 2 3\n";
+        let mut file = AtomicFile::create(&path).unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        file.flush().unwrap();
+        file.commit().unwrap();
+        assert!(fs::metadata(&path).unwrap().len() < 200);
+        assert_eq!(crate::read_mesh(&path).unwrap().positions.len(), 150);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_directory_that_takes_no_files_is_not_said_to_be_missing() {
+        let message = AtomicFile::create(Path::new("/proc/map.obj")).unwrap_err().to_string();
+        assert_eq!(message, "cannot write /proc/map.obj: the directory takes no new files");
     }
 
     #[test]

@@ -28,11 +28,18 @@ impl Format {
             .map(|(_, format)| format)
     }
 
-    /// The format that a path's extension claims.
+    /// The format that a path's extension claims; `.gz` after it says that the file is compressed.
     #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
+        let path = if is_compressed(path) { Path::new(path.file_stem()?) } else { path };
         Self::from_extension(path.extension()?.to_str()?)
     }
+}
+
+/// Whether the name says that a file is compressed with gzip.
+#[must_use]
+pub fn is_compressed(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"))
 }
 
 impl fmt::Display for Format {
@@ -56,5 +63,7 @@ mod tests {
         assert_eq!(Format::from_path(Path::new("a/b.c.ObJ")), Some(Format::Obj));
         assert_eq!(Format::from_path(Path::new("obj")), None);
         assert_eq!(Format::from_extension("gltf"), None);
+        assert_eq!(Format::from_path(Path::new("a.b/c.ply.GZ")), Some(Format::Ply));
+        assert_eq!(Format::from_path(Path::new("a.gz")), None);
     }
 }

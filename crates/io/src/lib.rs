@@ -2,7 +2,7 @@
 //!
 //! [`read_mesh`] and [`parse_mesh`] turn a file into a neutral [`PolygonMesh`]: positions and
 //! polygons exactly as stored (STL corners are welded by exact position), and typed [`Note`]s about
-//! everything that was left out. Whatever the input, they return a mesh or a [`ReadError`] that names
+//! everything that was left out. Content compressed with gzip is unpacked. Whatever the input, they return a mesh or a [`ReadError`] that names
 //! the file, the line or byte, what was found and what was expected; time and memory are linear in
 //! the size of the file, whatever its header announces. Geometry and topology are not judged here.
 //!
@@ -58,7 +58,7 @@ pub use cones::{Cones, parse_cones, read_cones, write_singularities};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
 pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};
 pub use field::{Directions, parse_rawfield, parse_rosy, read_field, write_rawfield, write_rosy};
-pub use format::Format;
+pub use format::{Format, is_compressed};
 pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{CornerUvs, PolygonMesh, Polygons};
 pub use note::Note;

@@ -8,6 +8,12 @@ use crate::{Format, Note, PolygonMesh};
 
 /// Names of the list of a face's corners.
 const CORNER_LISTS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
+/// The elements that are read.
+const SURFACE: [&str; 3] = ["vertex", "face", STRIPS];
+/// What ends a strip and begins the next one in a list of strips.
+const RESTART: f64 = -1.0;
+/// The element of triangle strips.
+const STRIPS: &str = "tristrips";
 
 /// Reads a PLY file, ASCII or binary.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
@@ -27,16 +33,11 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
 /// Refuses headers without a surface.
 fn check_contents(header: &Header<'_>) -> Parsed<()> {
     let count = |name| header.element(name).map_or(0, |element| element.count);
-    let (vertices, faces) = (count("vertex"), count("face"));
+    let (vertices, faces) = (count("vertex"), count("face") + count(STRIPS));
     if vertices == 0 {
         return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Vertices)));
     }
     if faces == 0 {
-        if count("tristrips") > 0 {
-            let what =
-                "the surface is stored as triangle strips, which are not read; save it with faces";
-            return Err(Fault::unsupported(None, what));
-        }
         if header.element("face").is_none() {
             let what = "the file has points but no surface (no `face` element)";
             return Err(Fault::unsupported(None, what));
@@ -51,13 +52,13 @@ fn read(header: &Header<'_>, source: &mut impl Source) -> Parsed<PolygonMesh> {
     let mut mesh = PolygonMesh::new(Format::Ply);
     for element in &header.elements {
         // Without properties an element has no data, whatever its count.
-        if element.properties.is_empty() && element.name != "vertex" && element.name != "face" {
+        if element.properties.is_empty() && !SURFACE.contains(&element.name.as_str()) {
             continue;
         }
         source.start_element(element);
         match element.name.as_str() {
             "vertex" => vertices(element, source, &mut mesh)?,
-            "face" => {
+            "face" | STRIPS => {
                 // The vertices may come later, so their announced count decides; it is checked there.
                 let vertices = header.element("vertex").map_or(0, |vertex| vertex.count);
                 faces(element, vertices, source, &mut mesh)?;
@@ -137,34 +138,53 @@ fn faces(
             "a floating-point type",
         ));
     }
-    let mut polygon = Vec::new();
+    let is_strip = element.name == STRIPS;
+    let mut corners = Vec::new();
     for _ in 0..element.count {
         source.start_row()?;
         for property in &element.properties {
             match property.kind {
                 Kind::List { count, item } if &property.name == list => {
-                    let corners = source.length(count)?;
-                    if corners < 3 {
-                        let found = usize::try_from(corners).unwrap_or_default();
+                    corners.clear();
+                    let length = source.length(count)?;
+                    if !is_strip && length < 3 {
+                        let found = usize::try_from(length).unwrap_or_default();
                         return Err(Fault::at(
                             source.position(),
                             ReadErrorKind::TooFewCorners { found },
                         ));
                     }
-                    polygon.clear();
-                    for _ in 0..corners {
+                    for _ in 0..length {
                         let value = source.value(item)?;
-                        polygon.push(vertex_index(value, vertices, source)?);
+                        match is_strip && value == RESTART {
+                            true => push_strip(&mut corners, mesh),
+                            false => corners.push(vertex_index(value, vertices, source)?),
+                        }
                     }
                 }
                 kind => source.skip(kind)?,
             }
         }
         source.end_row()?;
-        mesh.polygons.push(&polygon);
+        match is_strip {
+            true => push_strip(&mut corners, mesh),
+            false => mesh.polygons.push(&corners),
+        }
     }
     note_ignored(element, |name| name == list, mesh);
     Ok(())
+}
+
+/// Adds the triangles of a strip, every second turned over, and clears it. Triangles that use a vertex twice
+/// only carry the strip on to another place.
+fn push_strip(strip: &mut Vec<u32>, mesh: &mut PolygonMesh) {
+    for (i, corners) in strip.windows(3).enumerate() {
+        let [a, b, c] = [corners[0], corners[1], corners[2]];
+        if a != b && b != c && c != a {
+            mesh.polygons.push(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
+        }
+    }
+    strip.clear();
 }
 
 #[expect(

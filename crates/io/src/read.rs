@@ -1,7 +1,11 @@
 //! Choosing the reader for a file.
 
+use std::borrow::Cow;
 use std::fs;
+use std::io::Read;
 use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
 
 use crate::error::{Fault, Missing, Parsed, ReadErrorKind};
 use crate::text::quote;
@@ -10,7 +14,7 @@ use crate::{Format, Note, PolygonMesh, ReadError, obj, off, ply, stl};
 /// Reads a mesh file.
 ///
 /// The extension says the format, unless the content is plainly of another one: then the content
-/// decides, with a [`Note::ExtensionContradicted`].
+/// decides, with a [`Note::ExtensionContradicted`]. Content compressed with gzip is unpacked, whatever the name.
 ///
 /// # Errors
 /// [`ReadError`] if the file cannot be read or is not a mesh.
@@ -38,6 +42,7 @@ pub fn parse_mesh(
 }
 
 fn parse(bytes: &[u8], claimed: Option<Format>) -> Parsed<PolygonMesh> {
+    let bytes = &*unpacked(bytes)?;
     refuse_empty_or_packed(bytes)?;
     let format = match claimed {
         Some(claimed) => Format::detect_by_keyword(bytes).unwrap_or(claimed),
@@ -60,13 +65,24 @@ fn parse(bytes: &[u8], claimed: Option<Format>) -> Parsed<PolygonMesh> {
     Ok(mesh)
 }
 
+/// The content of what gzip has compressed, and other content as it is.
+fn unpacked(bytes: &[u8]) -> Parsed<Cow<'_, [u8]>> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes.into());
+    }
+    let mut content = Vec::new();
+    match MultiGzDecoder::new(bytes).read_to_end(&mut content) {
+        Ok(_) => Ok(content.into()),
+        Err(error) => Err(Fault::whole_file(ReadErrorKind::Io(error))),
+    }
+}
+
 /// Refuses content that no reader can do anything with.
 fn refuse_empty_or_packed(bytes: &[u8]) -> Parsed<()> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Content)));
     }
     let what = match bytes {
-        [0x1f, 0x8b, ..] => "the file is compressed with gzip; unpack it first",
         [b'P', b'K', 3, 4, ..] => "the file is a zip archive; unpack it first",
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "the text is UTF-16; save it as UTF-8",
         _ => return Ok(()),
@@ -94,6 +110,17 @@ mod tests {
     }
 
     #[test]
+    fn compressed_content_is_unpacked() {
+        let mut packed = Vec::new();
+        let mut encoder = flate2::read::GzEncoder::new(OBJ, flate2::Compression::default());
+        encoder.read_to_end(&mut packed).unwrap();
+        let plain = parse_mesh(OBJ, Some(Format::Obj), "a.obj").unwrap();
+        assert_eq!(parse_mesh(&packed, Some(Format::Obj), "a.obj.gz").unwrap(), plain);
+        let torn = parse_mesh(&packed[..packed.len() - 9], None, "a.obj.gz").unwrap_err();
+        assert!(torn.to_string().starts_with("a.obj.gz: cannot be read: "), "{torn}");
+    }
+
+    #[test]
     fn unclear_content_follows_the_name() {
         let error = parse_mesh(b"1 2 3\n", Some(Format::Obj), "a.obj").unwrap_err();
         let expected = "a.obj, line 1: expected an OBJ statement such as `v` or `f` (the file has none), found `1`";
@@ -105,7 +132,7 @@ mod tests {
         let fault = |bytes: &[u8]| parse_mesh(bytes, None, "a").unwrap_err().to_string();
         assert_eq!(fault(b""), "a: the file is empty");
         assert_eq!(fault(b" \r\n"), "a: the file is empty");
-        assert_eq!(fault(b"\x1f\x8b\x08"), "a: the file is compressed with gzip; unpack it first");
+        assert!(fault(b"\x1f\x8b\x08").starts_with("a: cannot be read: "));
         assert_eq!(fault(b"\xff\xfev\0"), "a: the text is UTF-16; save it as UTF-8");
         let unknown = "a: the format is not known (OBJ, OFF, PLY and STL are read); the content starts with `<html>`";
         assert_eq!(fault(b"<html>"), unknown);

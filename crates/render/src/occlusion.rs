@@ -9,7 +9,7 @@ use crate::raster::{ScreenPoint, Window};
 use crate::vec3::{Vec3, add, cross, dot, scale, unit};
 
 /// Axes of view; each serves two directions.
-const AXES: usize = 48;
+const AXES: usize = 16;
 /// Side of a map, in texels.
 const SIDE: usize = 360;
 /// Points are lifted off the surface by this many texels, lest it hides itself.
@@ -77,8 +77,8 @@ impl Occlusion {
     }
 }
 
-/// However many samples a pixel has, each asks several directions.
-const MAX_TURNS: usize = 9;
+/// However many rows of samples a pixel has, each asks several directions.
+const MAX_TURNS: usize = 3;
 
 /// Axes spread evenly over half a sphere, along a spiral.
 fn axis(k: usize) -> Vec3 {
@@ -123,12 +123,11 @@ impl Map {
     /// How far the surface reaches beyond a point, along the axis or against it.
     fn beyond(&self, p: Vec3, sign: f64, texel: f64) -> f64 {
         let seen = self.project(p, texel);
-        let (x, y) = (seen.x.floor(), seen.y.floor());
         let inside = |t: f64| (0.0..SIDE as f64).contains(&t);
-        if !(inside(x) && inside(y)) {
+        if !(inside(seen.x) && inside(seen.y)) {
             return 0.0;
         }
-        let [low, high] = self.depths[y as usize * SIDE + x as usize];
+        let [low, high] = self.depths[seen.y as usize * SIDE + seen.x as usize];
         let farthest = if sign > 0.0 { high } else { -low };
         (f64::from(farthest) - sign * seen.depth).max(0.0)
     }

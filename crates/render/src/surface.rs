@@ -259,18 +259,24 @@ struct Shader<'a> {
 }
 
 impl Shader<'_> {
-    /// The colour at `(x, y)`; `turn` tells the samples of a pixel apart.
-    fn color(&self, picture: &SurfacePicture, [x, y]: [f64; 2], turn: usize) -> Option<[f32; 3]> {
+    /// The light on the face at `(x, y)`; `turn` tells the rows of a pixel apart.
+    fn light(&self, picture: &SurfacePicture, [x, y]: [f64; 2], turn: usize) -> Option<f32> {
         let weights = self.barycentric?.at(x, y);
         let normal = unit(blend(weights.value, &self.normals)).unwrap_or(self.normals[0]);
-        let mut light = picture.lights.on(normal);
-        if let Some((occlusion, strength)) = &picture.occlusion {
-            let at = blend(weights.value, &self.positions);
-            let turns = picture.per_pixel * picture.per_pixel;
-            let open = occlusion.openness(at, normal, turn, turns);
-            light *= (1.0 - strength * (1.0 - open * open)) as f32;
-        }
-        Some(self.coat.color(&weights).map(|c| c * light))
+        let light = picture.lights.on(normal);
+        let Some((occlusion, strength)) = &picture.occlusion else { return Some(light) };
+        let at = blend(weights.value, &self.positions);
+        let open = occlusion.openness(at, normal, turn, picture.per_pixel);
+        Some(light * (1.0 - strength * (1.0 - open * open)) as f32)
+    }
+
+    /// The colour at `(x, y)` in this light.
+    fn color(&self, [x, y]: [f64; 2], light: f32) -> Option<[f32; 3]> {
+        let color = match self.coat {
+            FaceCoat::Plain(color) => color,
+            FaceCoat::Checker { .. } => self.coat.color(&self.barycentric?.at(x, y)),
+        };
+        Some(color.map(|c| c * light))
     }
 }
 
@@ -295,6 +301,8 @@ impl Painter for SurfacePicture<'_> {
         let y = band.centre(row);
         let mut current = EMPTY;
         let mut shader = None;
+        // Light changes slowly: a face has one in the row of a pixel.
+        let mut light = None;
         for (column, (&id, color)) in band.ids(row).iter().zip(colors).enumerate() {
             let x = column as f64 + 0.5;
             *color = match id {
@@ -309,9 +317,15 @@ impl Painter for SurfacePicture<'_> {
                     if face != current {
                         current = face;
                         shader = Some(self.shader(face as usize));
+                        light = None;
                     }
-                    let turn = (row % self.per_pixel) * self.per_pixel + column % self.per_pixel;
-                    let seen = shader.as_ref().and_then(|s| s.color(self, [x, y], turn));
+                    if column % self.per_pixel == 0 {
+                        light = None;
+                    }
+                    let seen = shader.as_ref().and_then(|shader| {
+                        light = light.or_else(|| shader.light(self, [x, y], row % self.per_pixel));
+                        shader.color([x, y], light?)
+                    });
                     seen.unwrap_or(self.background)
                 }
             };

@@ -24,37 +24,52 @@ impl From<WriteError> for Error {
 pub enum Output {
     /// A map, as OBJ.
     Map,
-    /// Quads, as OBJ or PLY.
+    /// Quads, as OBJ, OFF, PLY or STL.
     Quads,
     /// A picture, as PNG.
     Picture,
 }
 
 impl Output {
-    /// Refuses a name whose ending promises another format. A name without one promises none.
+    /// Refuses a name whose ending promises another format. A name without one promises none; `.gz` after it is for
+    /// all.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`].
     pub fn check_name(self, path: &Path) -> Result<(), Error> {
         let (what, endings) = match self {
             Self::Map => ("maps", &["obj"][..]),
-            Self::Quads => ("quad meshes", &["obj", "ply"][..]),
+            Self::Quads => ("quad meshes", &["obj", "off", "ply", "stl"][..]),
             Self::Picture => ("pictures", &["png"][..]),
         };
-        let Some(ending) = path.extension().map(|ending| ending.to_string_lossy()) else {
+        let name = match seamstress_io::is_compressed(path) {
+            true => path.with_extension(""),
+            false => path.to_owned(),
+        };
+        let Some(ending) = name.extension().map(|ending| ending.to_string_lossy()) else {
             return Ok(());
         };
         if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
             return Ok(());
         }
         let text = format!(
-            "{}: {what} are written as {}, not {}; give the output a name in .{}",
+            "{}: {what} are written as {}, not {}; give the output a name in {}",
             path.display(),
-            endings.join(" or ").to_uppercase().replace(" OR ", " or "),
+            alternatives(endings.iter().map(|ending| ending.to_uppercase())),
             ending.to_uppercase(),
-            endings.join(" or .")
+            alternatives(endings.iter().map(|ending| format!(".{ending}")))
         );
         Err(Error::new(ErrorKind::Unwritable, text).at_stage(Some(Stage::Files)))
+    }
+}
+
+/// "A, B or C".
+fn alternatives(words: impl Iterator<Item = String>) -> String {
+    let words: Vec<String> = words.collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
     }
 }
 

@@ -132,6 +132,23 @@ impl Inspection {
         Ok(Self::of_mesh(path, crate::files::read_mesh(path)?, options))
     }
 
+    /// Checks a mesh that is in memory as a file: OBJ, OFF, PLY or STL, as its content says. The name stands for it
+    /// in messages and reports, and its ending decides where the content is unclear.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unreadable`].
+    #[cfg(feature = "io")]
+    pub fn of_file_content(
+        content: &[u8],
+        name: impl AsRef<Path>,
+        options: &SurfaceOptions,
+    ) -> Result<Self, Error> {
+        let name = name.as_ref();
+        let format = seamstress_io::Format::from_path(name);
+        let read = seamstress_io::parse_mesh(content, format, &name.display().to_string())?;
+        Ok(Self::of_mesh(name, read, options))
+    }
+
     #[cfg(feature = "io")]
     pub(crate) fn of_mesh(
         path: &Path,

@@ -213,6 +213,7 @@ impl Surface {
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessStart, Error> {
+        options.size.check_count(self.metric().side())?;
         let mut settings = options.map.to_method();
         let edge_length = options.size.to_quantize().cell(self.metric().side());
         settings.purpose = method::Purpose::Quads { edge_length };

@@ -158,6 +158,9 @@ impl Default for GridSize {
     }
 }
 
+/// The most quads of a mesh: each takes about a kilobyte while it is made.
+const MOST_QUADS: f64 = 1e8;
+
 impl GridSize {
     fn validate(self) -> Result<(), Error> {
         let (name, value) = match self {
@@ -168,6 +171,22 @@ impl GridSize {
         match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(Error::options(format!("{name}: {value} is no number larger than 0"))),
+        }
+    }
+
+    /// Refuses a grid of more quads than fit into memory, on a surface with the area of a square of this side.
+    pub(crate) fn check_count(self, side: f64) -> Result<(), Error> {
+        let (name, value, count) = match self {
+            Self::Quads(x) => ("quads", x, x),
+            Self::EdgeLength(x) => ("edge_length", x, (side / x).powi(2)),
+            Self::Scale(x) => ("scale", x, (side * x).powi(2)),
+        };
+        match count <= MOST_QUADS {
+            true => Ok(()),
+            false => Err(Error::options(format!(
+                "{name}: {value} asks for about {count:.1e} quads, more than fit into memory; \
+                 at most {MOST_QUADS:.0e} are made"
+            ))),
         }
     }
 

@@ -255,7 +255,7 @@ impl QuadMesh {
         &self.report
     }
 
-    /// Writes it as OBJ or PLY, by the ending of the name; the file appears when it is complete.
+    /// Writes it as OBJ, OFF, PLY or STL (two triangles a quad), by the ending of the name; the file appears when it is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`].
@@ -265,7 +265,7 @@ impl QuadMesh {
         crate::files::write(path, crate::files::Output::Quads, |file| self.write_as(path, file))
     }
 
-    /// Writes it in the format that a file of this name has: OBJ or PLY.
+    /// Writes it in the format that a file of this name has: OBJ, OFF, PLY or STL. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.

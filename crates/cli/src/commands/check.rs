@@ -2,7 +2,7 @@
 
 use super::{inputs, targets};
 use crate::args::{FeatureArgs, RunArgs, after_help, not_negative};
-use crate::command::{Command, Session, to_json};
+use crate::command::{Command, Session, read_mesh, to_json};
 use crate::failure::{Failure, Status};
 use crate::output::{Kind, Plan};
 use crate::summary;
@@ -213,7 +213,7 @@ impl Command for CheckArgs {
     }
 
     fn make(&self, session: &Session) -> Result<Checked, Failure> {
-        let inspection = Inspection::read(&self.mesh, &self.surface)?;
+        let inspection = read_mesh(&self.mesh, &self.surface)?;
         if self.map.is_none() && !inspection.is_surface() {
             return Ok(Checked { inspection, surface: None, map: None });
         }

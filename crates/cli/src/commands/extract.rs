@@ -6,9 +6,7 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
-use seamstress::{
-    AtomicFile, Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh,
-};
+use seamstress::{Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh};
 use serde_json::Value;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -33,7 +31,10 @@ pub(crate) struct ExtractArgs {
     #[arg(value_name = "MAP.obj")]
     map: PathBuf,
 
-    /// Write the quad mesh to this OBJ or PLY file, replacing an existing one
+    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
+    /// as OBJ
+    ///
+    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
     #[arg(short, long, value_name = "QUADS")]
     output: PathBuf,
 
@@ -95,8 +96,13 @@ impl Command for ExtractArgs {
         self.picture.iter().map(|_| quads.picture()).collect()
     }
 
-    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
-        quads.write_as(&target.path, file)
+    fn write(
+        &self,
+        quads: &QuadMesh,
+        target: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
+        quads.write_as(&target.path, &mut file)
     }
 
     fn report(&self, quads: &QuadMesh) -> Value {

@@ -8,8 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{counted, row};
 use seamstress::{
-    AtomicFile, CertifyOptions, CrossField, MapFile, PolygonMesh, SurfaceOptions, write_cones,
-    write_matchings,
+    CertifyOptions, CrossField, MapFile, PolygonMesh, SurfaceOptions, write_cones, write_matchings,
 };
 use serde_json::Value;
 use std::io;
@@ -94,11 +93,16 @@ impl Command for FieldArgs {
         Ok(surface.field(map.uvs(), map.face_uvs(), &certify)?)
     }
 
-    fn write(&self, field: &CrossField, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
+    fn write(
+        &self,
+        field: &CrossField,
+        target: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
         match target.kind {
-            Kind::Cones => write_cones(field.cones(), file),
-            Kind::Matching => write_matchings(field.surface(), &field.matchings(), file),
-            _ => field.write_as(&target.path, file),
+            Kind::Cones => write_cones(field.cones(), &mut file),
+            Kind::Matching => write_matchings(field.surface(), &field.matchings(), &mut file),
+            _ => field.write_as(&target.path, &mut file),
         }
     }
 

@@ -8,8 +8,8 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
-    AtomicFile, CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions,
-    MapFile, MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
+    CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
+    MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -124,8 +124,13 @@ impl Command for IntegerArgs {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
     }
 
-    fn write(&self, map: &IntegerGridMap, _: &Target, file: &mut AtomicFile) -> io::Result<()> {
-        map.write_to(file)
+    fn write(
+        &self,
+        map: &IntegerGridMap,
+        _: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
+        map.write_to(&mut file)
     }
 
     fn report(&self, map: &IntegerGridMap) -> Value {

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::lab::{LaidOut, MethodOptions};
-use seamstress::{AtomicFile, Error, Features, SurfaceOptions, TextureOptions, write_cones};
+use seamstress::{Error, Features, SurfaceOptions, TextureOptions, write_cones};
 use serde_json::Value;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,10 +36,10 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct MapArgs {
-    /// The mesh to map: OBJ, OFF, PLY or STL
+    /// The mesh to map: OBJ, OFF, PLY or STL, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
-    /// Write the map to this OBJ file, replacing an existing one
+    /// Write the map to this OBJ file, replacing an existing one; `-` is standard output
     #[arg(short, long, value_name = "MAP.obj")]
     output: PathBuf,
 
@@ -115,12 +115,17 @@ impl Command for MapArgs {
         }
     }
 
-    fn write(&self, product: &LaidOut, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
+    fn write(
+        &self,
+        product: &LaidOut,
+        target: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
         match (product, target.kind) {
-            (LaidOut::Certified(map), Kind::Cones) => write_cones(map.cones(), file),
-            (LaidOut::Uncertified(layout), Kind::Cones) => write_cones(layout.cones(), file),
-            (LaidOut::Certified(map), _) => map.write_to(file),
-            (LaidOut::Uncertified(layout), _) => layout.write_to(file),
+            (LaidOut::Certified(map), Kind::Cones) => write_cones(map.cones(), &mut file),
+            (LaidOut::Uncertified(layout), Kind::Cones) => write_cones(layout.cones(), &mut file),
+            (LaidOut::Certified(map), _) => map.write_to(&mut file),
+            (LaidOut::Uncertified(layout), _) => layout.write_to(&mut file),
         }
     }
 

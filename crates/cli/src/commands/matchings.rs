@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{counted, rounded, row};
 use seamstress::lab::{ConsistentMatchings, MatchingOptions};
-use seamstress::{AtomicFile, Surface, SurfaceOptions, write_cones, write_matchings};
+use seamstress::{Surface, SurfaceOptions, write_cones, write_matchings};
 use serde_json::Value;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -76,11 +76,11 @@ impl Command for MatchingsArgs {
         &self,
         (surface, made): &Self::Product,
         target: &Target,
-        file: &mut AtomicFile,
+        mut file: &mut dyn io::Write,
     ) -> io::Result<()> {
         match target.kind {
-            Kind::Cones => write_cones(made.cones(), file),
-            _ => write_matchings(surface, made.matchings(), file),
+            Kind::Cones => write_cones(made.cones(), &mut file),
+            _ => write_matchings(surface, made.matchings(), &mut file),
         }
     }
 

@@ -9,8 +9,8 @@ use crate::summary;
 use crate::text::{counted, rounded, row};
 use seamstress::lab::read_stretches;
 use seamstress::{
-    AtomicFile, ConicStats, Error, Features, MapFile, Objective, OptimizeOptions, OptimizeReport,
-    SeamlessMap, SurfaceOptions, TextureOptions,
+    ConicStats, Error, Features, MapFile, Objective, OptimizeOptions, OptimizeReport, SeamlessMap,
+    SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -116,8 +116,13 @@ impl Command for OptimizeArgs {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
     }
 
-    fn write(&self, map: &Self::Product, _: &Target, file: &mut AtomicFile) -> io::Result<()> {
-        map.write_to(file)
+    fn write(
+        &self,
+        map: &Self::Product,
+        _: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
+        map.write_to(&mut file)
     }
 
     fn report(&self, map: &Self::Product) -> Value {

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::row;
 use seamstress::{
-    AtomicFile, Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
+    Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
 };
 use serde_json::Value;
 use std::io;
@@ -30,10 +30,13 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct QuadArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY or STL, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
-    /// Write the quad mesh to this OBJ or PLY file, replacing an existing one
+    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
+    /// as OBJ
+    ///
+    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
     #[arg(short, long, value_name = "QUADS")]
     output: PathBuf,
 
@@ -103,8 +106,13 @@ impl Command for QuadArgs {
         self.picture.iter().map(|_| quads.picture()).collect()
     }
 
-    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut AtomicFile) -> io::Result<()> {
-        quads.write_as(&target.path, file)
+    fn write(
+        &self,
+        quads: &QuadMesh,
+        target: &Target,
+        mut file: &mut dyn io::Write,
+    ) -> io::Result<()> {
+        quads.write_as(&target.path, &mut file)
     }
 
     fn report(&self, quads: &QuadMesh) -> Value {

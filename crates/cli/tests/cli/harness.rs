@@ -64,6 +64,12 @@ impl Folder {
         wait(self.start(arguments))
     }
 
+    /// Runs the command with a file as its standard input.
+    pub(crate) fn fed(&self, name: &str, arguments: &[&str]) -> Run {
+        let file = fs::File::open(self.path(name)).unwrap();
+        wait(self.command(arguments).stdin(file).spawn().unwrap())
+    }
+
     /// Runs the command, which must end with this exit code.
     #[track_caller]
     pub(crate) fn expect(&self, code: i32, arguments: &[&str]) -> Run {

@@ -1,6 +1,6 @@
 //! `seamstress quad`.
 
-use crate::harness::{Folder, lines_of};
+use crate::harness::{Folder, lines_of, off};
 use seamstress_testkit as kit;
 use serde_json::Value;
 
@@ -29,6 +29,58 @@ fn a_cube_becomes_quads_with_its_corners_irregular() {
         (&layout["integer_error"], &layout["cones"]["by_index"]["1"]),
         (&json("0.0"), &json("8"))
     );
+}
+
+#[test]
+fn every_format_has_the_same_quads() {
+    let folder = Folder::new();
+    folder.write_obj("torus.obj", &kit::torus(16, 10, 2.0, 0.8));
+    let count = |name: &str| {
+        folder.expect(0, &["quad", "torus.obj", "--quads", "200", "-o", name]);
+        let inspected = json(&folder.expect(0, &["check", name, "--json"]).stdout);
+        inspected["input"]["polygons_read"].as_u64().unwrap()
+    };
+    let quads = count("q.obj");
+    for name in ["q.off", "q.ply", "q.obj.gz", "q.PLY.gz"] {
+        assert_eq!(count(name), quads, "{name}");
+    }
+    assert_eq!(count("q.stl"), 2 * quads);
+    let run = folder.expect(2, &["quad", "torus.obj", "--quads", "200", "-o", "q.glb.gz"]);
+    assert!(run.stderr.contains("OBJ, OFF, PLY or STL, not GLB"), "{run:?}");
+}
+
+#[test]
+fn standard_input_and_output_stand_for_files() {
+    let folder = Folder::new();
+    let torus = kit::torus(16, 10, 2.0, 0.8);
+    folder.write_obj("torus.obj", &torus);
+    folder.write("torus.off", off(&torus));
+    let arguments = ["quad", "-", "--quads", "200", "-o", "-"];
+    for name in ["torus.obj", "torus.off"] {
+        let run = folder.fed(name, &arguments);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        // Nothing but the quads, and those of the file.
+        assert!(run.stdout.lines().all(|line| ["#", "v", "f"].contains(&&line[..1])), "{run:?}");
+        folder.expect(0, &["quad", name, "--quads", "200", "-o", "q.obj"]);
+        let quads = |obj: &str| lines_of(obj, "f").join("\n");
+        assert_eq!(quads(&run.stdout), quads(&folder.read("q.obj")));
+    }
+    let run = folder.fed("torus.obj", &[&arguments[..], &["--json"]].concat());
+    assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""), "{run:?}");
+    folder.write("nothing", "");
+    let run = folder.fed("nothing", &["check", "-"]);
+    assert_eq!((run.code, run.stderr.trim_end()), (Some(1), "error: -: the file is empty"));
+}
+
+#[test]
+fn absurd_sizes_are_refused_at_once() {
+    let folder = Folder::new();
+    folder.write_obj("torus.obj", &kit::torus(16, 10, 2.0, 0.8));
+    for size in [["--quads", "1e9"], ["--edge-length", "1e-6"], ["--scale", "1e6"]] {
+        let run = folder.expect(2, &[&["quad", "torus.obj", "-o", "q.obj"][..], &size].concat());
+        assert!(run.stderr.contains("more than fit into memory"), "{run:?}");
+    }
+    assert_eq!(folder.names(), ["torus.obj"]);
 }
 
 #[test]

@@ -172,12 +172,6 @@ fn faults_in_the_header_name_their_line() {
             "a: the file has 5 vertices but no faces",
         ),
         ("element face 1\n".to_owned(), "a: the file has no vertices"),
-        (
-            format!(
-                "element vertex 5\n{xyz}element tristrips 1\nproperty list int int vertex_indices\n"
-            ),
-            "a: the surface is stored as triangle strips, which are not read; save it with faces",
-        ),
     ];
     for (header, expected) in cases {
         assert_eq!(fault(&header, "0 0 0\n"), expected);
@@ -203,4 +197,21 @@ fn counts_cost_nothing() {
     let fault = parse(&[header.as_bytes(), &[0; 24]].concat()).unwrap_err().named("a").to_string();
     let expected = "the file ends too early: expected 4000000000 `vertex` elements, found 2";
     assert_eq!(fault, format!("a, byte {}: {expected}", header.len() + 24));
+}
+
+#[test]
+fn triangle_strips_are_read() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+                  element tristrips 2\nproperty list int int vertex_indices\nend_header\n";
+    let vertices = "0 0 0\n".repeat(6);
+    // The first list has two strips, the second of which goes on by a step of no area.
+    let text = format!("{header}{vertices}11 0 1 2 3 -1 3 4 5 5 1 2\n3 5 4 3\n");
+    let mesh = parse(text.as_bytes()).unwrap();
+    let expected = [[0, 1, 2], [2, 1, 3], [3, 4, 5], [1, 5, 2], [5, 4, 3]];
+    let found: Vec<&[u32]> = mesh.polygons.iter().collect();
+    assert_eq!(found, expected);
+    assert_eq!(mesh.notes, []);
+    let bad = format!("{header}{vertices}3 0 1 6\n0\n");
+    let error = parse(bad.as_bytes()).unwrap_err().named("a").to_string();
+    assert!(error.contains("vertex index 6 is out of range"), "{error}");
 }
