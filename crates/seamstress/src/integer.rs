@@ -154,6 +154,7 @@ impl Surface {
     /// [`ErrorKind::NoIntegerMap`], and those of [`Surface::parametrize`].
     pub fn integer_map(&self, options: &IntegerMapOptions) -> Result<IntegerGridMap, Error> {
         options.validate()?;
+        options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
@@ -178,6 +179,7 @@ impl Surface {
         options: &IntegerMapOptions,
     ) -> Result<IntegerGridMap, Error> {
         options.validate()?;
+        options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::none()));
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let made = self.context().run(|watcher| {
@@ -213,7 +215,6 @@ impl Surface {
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessStart, Error> {
-        options.size.check_count(self.metric().side())?;
         let mut settings = options.map.to_method();
         let edge_length = options.size.to_quantize().cell(self.metric().side());
         settings.purpose = method::Purpose::Quads { edge_length };

@@ -291,6 +291,7 @@ impl Surface {
     /// [`ErrorKind::NoQuads`], [`ErrorKind::NotAManifold`], and those of [`Surface::integer_map`].
     pub fn quad_mesh(&self, options: &QuadOptions) -> Result<QuadMesh, Error> {
         options.validate()?;
+        options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
             let integer = IntegerMapOptions {

@@ -224,7 +224,7 @@ fn regular(n: u32, radius: f64) -> Vec<Point2> {
 }
 
 fn star(n: u32, inner: f64) -> Vec<Point2> {
-    let radius = |i: usize| if i % 2 == 0 { 1.0 } else { inner };
+    let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { inner };
     let corners = regular(2 * n, 1.0).into_iter().enumerate();
     corners.map(|(i, p)| p.map(|x| x * radius(i))).collect()
 }

@@ -38,18 +38,17 @@ fn a_map_becomes_quads_with_report_and_picture() {
 }
 
 #[test]
-fn quads_are_written_as_ply_too_and_as_nothing_else() {
+fn quads_are_written_in_the_formats_that_are_read_and_in_no_other() {
     let folder = Folder::new();
     write_map(&folder, "map.obj", &squares(&cube(), 2));
     folder.expect(0, &["extract", "map.obj", "-o", "q.ply", "--quiet"]);
     folder.expect(0, &["layout-quads", "q.ply", "-o", "back.obj"]);
     folder.expect(0, &["extract", "back.obj", "-o", "again.obj", "--quiet"]);
     assert_eq!(lines_of(&folder.read("again.obj"), "f").len(), 24);
-    let run = folder.expect(2, &["extract", "map.obj", "-o", "q.stl"]);
-    assert!(run.stderr.contains("quad meshes are written as OBJ or PLY, not STL"), "{run:?}");
-    assert!(run.stderr.contains("in .obj or .ply"), "{run:?}");
+    let run = folder.expect(2, &["extract", "map.obj", "-o", "q.glb"]);
+    assert!(run.stderr.contains("in .obj, .off, .ply or .stl"), "{run:?}");
     for (arguments, refusal) in [
-        (["-o", "q.glb"].as_slice(), "quad meshes are written as OBJ or PLY, not GLB"),
+        (["-o", "q.glb"].as_slice(), "quad meshes are written as OBJ, OFF, PLY or STL, not GLB"),
         (&["-o", "q.obj", "--picture", "q.jpg"], "pictures are written as PNG, not JPG"),
     ] {
         let run = folder.expect(2, &[&["extract", "map.obj"], arguments].concat());
