@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test, with helpers")]
 
 use seamstress::{
-    CancelToken, Context, ErrorCategory, Features, Inspection, MapOptions, QuadOptions, Stage,
-    Surface, SurfaceOptions, Weld,
+    CancelToken, Context, ErrorCategory, ExtractionOptions, Features, Inspection, MapOptions,
+    QuadOptions, Stage, Surface, SurfaceOptions, Weld,
 };
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
@@ -131,15 +131,15 @@ fn soups_are_welded_and_say_so() {
 
 #[test]
 fn components_without_quads_are_named() {
-    // A square of 8 by 8, and a triangle far smaller than a cell.
-    let positions =
-        [[0, 0], [8, 0], [8, 8], [0, 8]].map(|[x, y]| [f64::from(x), f64::from(y), 0.0]);
-    let small = [[20.0, 0.0, 0.0], [20.1, 0.0, 0.0], [20.0, 0.1, 0.0]];
-    let positions = [positions.as_slice(), &small].concat();
-    let surface = Surface::from_triangles(&positions, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]).unwrap();
-    // Features that name no edge: the boundary is cut through.
-    let options = QuadOptions::count(60).features(Features::angle(179.0));
-    let quads = surface.quad_mesh(&options).unwrap();
+    // A map of a square of two by two cells, and of a triangle smaller than one.
+    let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    let uvs = [square.as_slice(), &[[5.2, 0.2], [5.7, 0.2], [5.2, 0.7]]].concat();
+    let positions: Vec<[f64; 3]> = uvs.iter().map(|&[u, v]| [u, v, 0.0]).collect();
+    let faces = [[0, 1, 2], [0, 2, 3], [4, 5, 6]];
+    let surface = Surface::from_triangles(&positions, &faces).unwrap();
+    let (features, options) = (Features::none(), ExtractionOptions::default());
+    let quads = surface.extract_quads(&uvs, &faces, &features, &options).unwrap();
+    assert_eq!(quads.quads().len(), 4);
     assert_eq!(quads.report().quads.components_without_quads, [1]);
 }
 
