@@ -4,6 +4,7 @@ use crate::energy::{couple, schur_complement};
 use crate::error::QuantizationFailure;
 use crate::gauss::{Gauss, Overflow};
 use crate::isolines::turning_points;
+use crate::linear::Dense;
 use crate::path::SHIFT;
 use crate::rounding::ReducedEnergy;
 use crate::scene::Scene;
@@ -12,11 +13,15 @@ use crate::space::{GridNeeds, IntegerSpace};
 use num_complex::Complex64;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_parallel::prelude::*;
 use seamstress_parametrize::cut::Cut;
-use seamstress_parametrize::energy::{SymmetricDirichlet, triangles};
+use seamstress_parametrize::energy::{SymmetricDirichlet, Triangle, triangles};
 use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::map::SeamlessMap;
+
+/// The area does not depend on free unknowns if its derivatives by them are below this part of the others: rounding.
+const FREE_OF_AREA: f64 = 1e-9;
 
 /// A seamless map in the exact space of integer-grid maps, its coordinates not integral as yet.
 pub(crate) struct SeamlessLayout<'a> {
@@ -119,7 +124,42 @@ impl<'a> SeamlessLayout<'a> {
         self.problem.factorize(SHIFT)?;
         let matrix = schur_complement(&self.problem, &self.space)?;
         let turnable = self.aligned.is_empty().then_some(self.coordinates.as_slice());
-        Ok(ReducedEnergy::new(&matrix, turnable)?)
+        Ok(ReducedEnergy::new(&matrix, turnable, self.area_form())?)
+    }
+
+    /// The matrix G of the area as a function of the coordinates, half of `x' G x`; none if the free unknowns
+    /// have a part in it, as where a boundary is not aligned.
+    fn area_form(&self) -> Option<Dense> {
+        let space = self.problem.space();
+        let n_free = self.problem.n_free();
+        let pulled = space.pull_back(&area_gradient(self.problem.triangles(), &self.z()));
+        let largest = |part: &[f64]| part.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        if largest(&pulled[..n_free]) > FREE_OF_AREA * largest(&pulled[n_free..]) {
+            return None;
+        }
+        // The others have wedges that the integral coordinates do not move.
+        let moves = |w: u32| {
+            let rows = [2 * w as usize, 2 * w as usize + 1];
+            rows.iter().any(|&row| space.row(row).0.iter().any(|&k| k as usize >= n_free))
+        };
+        let triangles = self.problem.triangles().iter();
+        let triangles: Vec<Triangle> =
+            triangles.filter(|t| t.wedges.iter().any(|&w| moves(w))).copied().collect();
+        let order = self.space.n_coordinates();
+        let column = |k: usize| {
+            let mut coordinates = vec![0.0; order];
+            coordinates[k] = 1.0;
+            let mut y = vec![0.0; n_free];
+            y.extend(self.space.expand_real(&coordinates));
+            let pulled = space.pull_back(&area_gradient(&triangles, &space.expand(&y)));
+            let mut column = vec![0.0; order];
+            for (row, x) in self.space.held().iter().zip(&pulled[n_free..]) {
+                row.iter().for_each(|&(i, c)| column[i] += c as f64 * x);
+            }
+            column
+        };
+        let columns: Vec<Vec<f64>> = (0..order).into_par_iter().map(column).collect();
+        Some(Dense { order, values: columns.concat() })
     }
 
     /// Where the free unknowns go when the held ones move to a target and the last factored energy, a
@@ -161,6 +201,19 @@ impl<'a> SeamlessLayout<'a> {
         let uv = |&w: &u32| [z[w as usize].re, z[w as usize].im];
         Ok((self.cut.wedge.iter().map(uv).collect(), right - left))
     }
+}
+
+/// The area's derivatives by the positions of wedges.
+fn area_gradient(triangles: &[Triangle], z: &[Complex64]) -> Vec<Complex64> {
+    let mut gradient = vec![Complex64::ZERO; z.len()];
+    for triangle in triangles {
+        let wedges = triangle.wedges.map(|w| w as usize);
+        for k in 0..3 {
+            let opposite = z[wedges[(k + 2) % 3]] - z[wedges[(k + 1) % 3]];
+            gradient[wedges[k]] += 0.5 * Complex64::i() * opposite;
+        }
+    }
+    gradient
 }
 
 /// What has to come to lie on the grid: cones, and with aligned edges their corners and isolines.

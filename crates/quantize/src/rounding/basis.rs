@@ -1,6 +1,6 @@
 //! Integer steps that cost little.
 
-use crate::linear::{Dense, Row};
+use crate::linear::{Dense, Row, apply};
 
 /// A basis of the integer vectors, reduced in pairs: no vector gets shorter by taking multiples of another one
 /// from it, in the energy.
@@ -53,6 +53,26 @@ impl ReducedBasis {
     }
 }
 
+impl ReducedBasis {
+    /// A quadratic form on multiples of the vectors.
+    pub fn express(&self, form: &Dense) -> Dense {
+        let n = form.order;
+        let rows: Vec<Vec<f64>> = self
+            .vectors
+            .iter()
+            .map(|vector| {
+                let mut row = vec![0.0; n];
+                for &(k, c) in vector {
+                    row.iter_mut().zip(form.row(k)).for_each(|(r, f)| *r += c as f64 * f);
+                }
+                row
+            })
+            .collect();
+        let along = |row: &Vec<f64>| self.vectors.iter().map(|v| apply(v, row)).collect::<Vec<_>>();
+        Dense { order: n, values: rows.iter().flat_map(along).collect() }
+    }
+}
+
 /// Takes `q` times vector j from vector i.
 fn subtract(vectors: &mut [i64], n: usize, i: usize, j: usize, q: i64) {
     for k in 0..n {
@@ -72,7 +92,6 @@ impl Dense {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::apply;
     use seamstress_testkit::Rng;
 
     /// A positive definite matrix in a basis far from reduced.

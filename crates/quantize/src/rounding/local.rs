@@ -1,6 +1,6 @@
 //! Local search around an integer point.
 
-use super::problem::RoundingProblem;
+use super::problem::{AreaForm, RoundingProblem, SizeCost};
 use crate::linear::{Row, apply};
 use seamstress_parametrize::progress::{Cancelled, Watch};
 
@@ -67,6 +67,42 @@ struct LocalSearch<'a> {
     moved: Vec<Displacements>,
     /// A fall of the energy that counts.
     gain: f64,
+    /// The area there, if the coordinates decide on it.
+    area: Option<Area<'a>>,
+}
+
+/// The area at an integer point, its slope along the vectors of the basis, and its cost.
+struct Area<'a> {
+    form: &'a AreaForm,
+    value: f64,
+    gradient: Vec<f64>,
+    cost: SizeCost,
+}
+
+impl<'a> Area<'a> {
+    fn new(problem: &'a RoundingProblem<'a>, x: &[i64]) -> Option<Self> {
+        let form = problem.energy.area.as_ref()?;
+        let at: Vec<f64> = x.iter().map(|&x| x as f64).collect();
+        let slope = form.matrix.multiply(&at);
+        let gradient = problem.energy.basis.vectors.iter().map(|row| apply(row, &slope)).collect();
+        Some(Self { form, value: form.at(&at), gradient, cost: problem.size_cost() })
+    }
+
+    /// Change of the area by a single step.
+    fn change(&self, (k, step): Step) -> f64 {
+        step as f64 * self.gradient[k] + 0.5 * self.form.in_basis.row(k)[k]
+    }
+
+    /// Change of the cost by a change of the area.
+    fn cost_of(&self, change: f64) -> f64 {
+        self.cost.at(self.value + change) - self.cost.at(self.value)
+    }
+
+    fn take(&mut self, (k, step): Step) {
+        self.value += self.change((k, step));
+        let row = self.form.in_basis.row(k);
+        self.gradient.iter_mut().zip(row).for_each(|(g, f)| *g += step as f64 * f);
+    }
 }
 
 impl<'a> LocalSearch<'a> {
@@ -83,6 +119,7 @@ impl<'a> LocalSearch<'a> {
             memberships: problem.memberships(),
             moved: displacements(problem),
             gain: GAIN * problem.energy_at(&x).abs() + SMALLEST_GAIN,
+            area: Area::new(problem, &x),
             x,
         };
         let all = 0..search.values.len() + problem.joint.len();
@@ -112,8 +149,25 @@ impl<'a> LocalSearch<'a> {
     }
 
     /// Change of the energy by a single step.
-    fn cost(&self, (k, step): Step) -> f64 {
+    fn cost(&self, step: Step) -> f64 {
+        let size = self.area.as_ref().map_or(0.0, |area| area.cost_of(area.change(step)));
+        self.cost_of_shape(step) + size
+    }
+
+    /// The same, whatever the area.
+    fn cost_of_shape(&self, (k, step): Step) -> f64 {
         self.problem.energy.basis.matrix.row(k)[k] + step as f64 * self.gradient[k]
+    }
+
+    /// Change of the energy by two steps along different vectors.
+    fn cost_of_pair(&self, a: Step, b: Step) -> f64 {
+        let sign = (a.1 * b.1) as f64;
+        let coupling = 2.0 * sign * self.problem.energy.basis.matrix.row(a.0)[b.0];
+        let size = self.area.as_ref().map_or(0.0, |area| {
+            let coupling = sign * area.form.in_basis.row(a.0)[b.0];
+            area.cost_of(area.change(a) + area.change(b) + coupling)
+        });
+        self.cost_of_shape(a) + self.cost_of_shape(b) + coupling + size
     }
 
     /// The constraints that some steps change, and their new values.
@@ -165,6 +219,9 @@ impl<'a> LocalSearch<'a> {
             let scale = 2.0 * step as f64;
             let row = basis.matrix.row(k);
             self.gradient.iter_mut().zip(row).for_each(|(g, p)| *g += scale * p);
+            if let Some(area) = &mut self.area {
+                area.take((k, step));
+            }
         }
     }
 
@@ -206,16 +263,10 @@ impl<'a> LocalSearch<'a> {
         let is_involved: Vec<bool> = self.moved.iter().map(touches).collect();
         let mut pairs: Vec<(f64, [Step; 2])> = Vec::new();
         for i in 0..self.moved.len() {
-            let row = self.problem.energy.basis.matrix.row(i);
             for step in [1, -1] {
-                let own = self.cost((i, step));
-                for (j, entry) in row.iter().enumerate().take(i) {
-                    if !is_involved[i] && !is_involved[j] {
-                        continue;
-                    }
+                for j in (0..i).filter(|&j| is_involved[i] || is_involved[j]) {
                     for other in [1, -1] {
-                        let coupling = 2.0 * (step * other) as f64 * entry;
-                        let cost = own + self.cost((j, other)) + coupling;
+                        let cost = self.cost_of_pair((i, step), (j, other));
                         if cost < limit {
                             pairs.push((cost, [(j, other), (i, step)]));
                         }

@@ -155,7 +155,7 @@ mod tests {
             product + if i == j { 0.3 } else { 0.0 }
         };
         let values = (0..16).map(|k| entry(k / 4, k % 4)).collect();
-        ReducedEnergy::new(&Dense { order: 4, values }, None).unwrap()
+        ReducedEnergy::new(&Dense { order: 4, values }, None, None).unwrap()
     }
 
     fn mean(seed: u64) -> Vec<f64> {

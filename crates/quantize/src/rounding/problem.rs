@@ -18,7 +18,29 @@ pub struct ReducedEnergy {
     pub covariance: Dense,
     /// Steps along which the search moves.
     pub basis: ReducedBasis,
+    /// The area, if the coordinates alone decide on it.
+    pub area: Option<AreaForm>,
 }
+
+/// The area as a function of the coordinates: half of `x' G x`.
+#[derive(Debug, Clone)]
+pub struct AreaForm {
+    /// The matrix G.
+    pub matrix: Dense,
+    /// The same on multiples of the vectors of the basis.
+    pub in_basis: Dense,
+}
+
+impl AreaForm {
+    /// The area at a point.
+    pub fn at(&self, x: &[f64]) -> f64 {
+        0.5 * dot(x, &self.matrix.multiply(x))
+    }
+}
+
+/// What it costs to miss the area, as a multiple of what a uniform change of size would cost: the number of quads is that
+/// area, and a cell may be stretched to keep it where others had to be.
+const AREA_WEIGHT: f64 = 16.0;
 
 /// Shift of the energy as a share of its mean diagonal, for directions that cost nothing.
 const SHIFT: f64 = 1e-12;
@@ -27,11 +49,16 @@ const SHIFT: f64 = 1e-12;
 const TURNING: f64 = 0.5;
 
 impl ReducedEnergy {
-    /// Of a matrix, given the coordinates of the map, real and imaginary parts by turns, if it may be turned.
+    /// Of a matrix, given the coordinates of the map, real and imaginary parts by turns, if it may be turned; and the
+    /// matrix of its area, if the coordinates alone decide on that.
     ///
     /// # Errors
     /// When the matrix is not positive definite.
-    pub fn new(matrix: &Dense, turnable: Option<&[f64]>) -> Result<Self, NotPositiveDefinite> {
+    pub fn new(
+        matrix: &Dense,
+        turnable: Option<&[f64]>,
+        area: Option<Dense>,
+    ) -> Result<Self, NotPositiveDefinite> {
         let mut matrix = matrix.normalized();
         let n = matrix.order;
         if let Some(map) = turnable {
@@ -41,7 +68,8 @@ impl ReducedEnergy {
         (0..n).for_each(|k| shifted[k * n + k] += SHIFT * matrix.trace() / n as f64);
         let covariance = Dense { order: n, values: invert_spd(&shifted, n)? };
         let basis = ReducedBasis::new(&matrix);
-        Ok(Self { matrix, covariance, basis })
+        let area = area.map(|matrix| AreaForm { in_basis: basis.express(&matrix), matrix });
+        Ok(Self { matrix, covariance, basis, area })
     }
 }
 
@@ -148,6 +176,20 @@ impl Rule {
     }
 }
 
+/// What it costs to miss an area.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SizeCost {
+    wanted: f64,
+    weight: f64,
+}
+
+impl SizeCost {
+    /// The cost of an area.
+    pub(super) fn at(self, area: f64) -> f64 {
+        self.weight * (area / self.wanted - 1.0).powi(2)
+    }
+}
+
 /// A closest vector problem: energy over integer points that satisfy constraints.
 #[derive(Debug, Clone)]
 pub struct RoundingProblem<'a> {
@@ -203,8 +245,20 @@ impl RoundingProblem<'_> {
         memberships
     }
 
-    /// The energy at integers.
+    /// The energy at integers, with what it costs to miss the area of the map.
     pub fn energy_at(&self, x: &[i64]) -> f64 {
-        self.energy.matrix.energy(&self.mean, x)
+        let size = self.energy.area.as_ref().map_or(0.0, |form| {
+            let at: Vec<f64> = x.iter().map(|&x| x as f64).collect();
+            self.size_cost().at(form.at(&at))
+        });
+        self.energy.matrix.energy(&self.mean, x) + size
+    }
+
+    /// What it costs to miss the area of the map.
+    pub(super) fn size_cost(&self) -> SizeCost {
+        let Some(form) = &self.energy.area else { return SizeCost { wanted: 1.0, weight: 0.0 } };
+        let resize = dot(&self.mean, &self.energy.matrix.multiply(&self.mean));
+        // Lengths change by half as much as the area does.
+        SizeCost { wanted: form.at(&self.mean), weight: AREA_WEIGHT * resize / 4.0 }
     }
 }
