@@ -101,14 +101,18 @@ impl<'a> SeamlessLayout<'a> {
         Scene { mesh, cut, matching, needs: &self.needs, space: &self.space, z }
     }
 
-    /// The symmetric Dirichlet energy around the layout as a function of the coordinates.
+    /// The symmetric Dirichlet energy around the layout as a function of the coordinates, perhaps with what it costs to miss
+    /// the area.
     ///
     /// # Errors
     /// When a linear system cannot be solved.
-    pub(crate) fn reduced_energy(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+    pub(crate) fn reduced_energy(
+        &mut self,
+        keeps_area: bool,
+    ) -> Result<ReducedEnergy, QuantizationFailure> {
         let z = self.z();
         self.problem.linearize(&SymmetricDirichlet, &z);
-        self.reduce()
+        self.reduce(keeps_area)
     }
 
     /// The energy that preserves Jacobians as a function of the coordinates; it stays factored.
@@ -117,14 +121,15 @@ impl<'a> SeamlessLayout<'a> {
     /// When a linear system cannot be solved.
     pub(crate) fn reduced_dirichlet(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
         self.problem.assemble_dirichlet();
-        self.reduce()
+        self.reduce(false)
     }
 
-    fn reduce(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+    fn reduce(&mut self, keeps_area: bool) -> Result<ReducedEnergy, QuantizationFailure> {
         self.problem.factorize(SHIFT)?;
         let matrix = schur_complement(&self.problem, &self.space)?;
         let turnable = self.aligned.is_empty().then_some(self.coordinates.as_slice());
-        Ok(ReducedEnergy::new(&matrix, turnable, self.area_form())?)
+        let area = if keeps_area { self.area_form() } else { None };
+        Ok(ReducedEnergy::new(&matrix, turnable, area)?)
     }
 
     /// The matrix G of the area as a function of the coordinates, half of `x' G x`; none if the free unknowns

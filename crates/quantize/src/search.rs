@@ -5,7 +5,7 @@ use crate::error::QuantizationFailure;
 use crate::farkas::farkas_cuts;
 use crate::layout::SeamlessLayout;
 use crate::obstacles::Obstacles;
-use crate::options::{QuantizeOptions, RoundingMethod};
+use crate::options::{GridSize, QuantizeOptions, RoundingMethod};
 use crate::path::{Advance, advance};
 use crate::rounding::{
     HOPELESS, ReducedEnergy, Rounding, RoundingProblem, improve, round, round_greedily,
@@ -109,7 +109,9 @@ impl<'a> ComponentSearch<'a> {
             layout => layout?,
         };
         let energy = match options.rounding {
-            RoundingMethod::Constrained => layout.reduced_energy()?,
+            RoundingMethod::Constrained => {
+                layout.reduced_energy(matches!(options.size, GridSize::Quads(_)))?
+            }
             RoundingMethod::Greedy => layout.reduced_dirichlet()?,
         };
         let obstacles = Obstacles::new(&layout)?;

@@ -87,6 +87,9 @@ fn add_turning(energy: &mut Dense, map: &[f64]) {
     }
 }
 
+/// Areas below this part of the one wanted count as that: some are not positive.
+const SMALLEST_RATIO: f64 = 1e-3;
+
 /// A displacement on the grid that may neither vanish nor turn around.
 #[derive(Debug, Clone)]
 pub struct Constraint {
@@ -186,7 +189,7 @@ pub(super) struct SizeCost {
 impl SizeCost {
     /// The cost of an area.
     pub(super) fn at(self, area: f64) -> f64 {
-        self.weight * (area / self.wanted - 1.0).powi(2)
+        self.weight * (area / self.wanted).max(SMALLEST_RATIO).ln().powi(2)
     }
 }
 
