@@ -57,6 +57,10 @@ pub(crate) struct FeatureArgs {
     /// angle:DEGREES  where the surface bends by that much or more
     /// boundary       the boundary
     /// lines          the `l` elements of the mesh, an OBJ file
+    /// material       between faces of different materials (`usemtl` in an OBJ file)
+    /// group          between faces of different groups or objects (`g` and `o`)
+    /// smoothing      between faces of different smoothing groups (`s`)
+    /// uv-seams       where the texture coordinates (`vt`) differ on both sides
     /// edges:A-B,...  edges by their vertices, counted from 0
     /// pairs:FILE     two vertices a line, counted from 0; # starts a comment
     /// sharp:FILE     a .sharp file of QuadWild: the count, then `type,face,side` a line

@@ -106,7 +106,7 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options that few users of `map`, `quad` and `integer` need.
-const RARE: [&str; 4] = ["cone_price", "angle", "shift", "period"];
+const RARE: [&str; 5] = ["corner_angle", "cone_price", "angle", "shift", "period"];
 
 /// Parses the command line, or prints help or what is wrong with it and ends.
 pub(crate) fn parse() -> CommandLine {

@@ -31,6 +31,7 @@
 //! ```
 
 mod atomic;
+mod attributes;
 mod cones;
 mod detect;
 mod error;
@@ -54,6 +55,7 @@ mod write;
 mod write_polygons;
 
 pub use atomic::{AtomicFile, WriteError};
+pub use attributes::{Attribute, FaceAttributes};
 pub use cones::{Cones, parse_cones, read_cones, write_singularities};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
 pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};

@@ -1,6 +1,6 @@
 //! The neutral polygon mesh that every reader fills.
 
-use crate::{Format, Note};
+use crate::{FaceAttributes, Format, Note};
 
 /// A mesh as a file states it: nothing is repaired, triangulated or reordered.
 ///
@@ -18,6 +18,8 @@ pub struct PolygonMesh {
     pub lines: Vec<[u32; 2]>,
     /// Texture coordinates, if every corner of every polygon has them (OBJ only).
     pub corner_uvs: Option<CornerUvs>,
+    /// Materials and groups of the polygons (OBJ only).
+    pub attributes: FaceAttributes,
     /// The format of the content.
     pub format: Format,
     /// What was changed or left out.
@@ -31,9 +33,16 @@ impl PolygonMesh {
             polygons: Polygons::default(),
             lines: Vec::new(),
             corner_uvs: None,
+            attributes: FaceAttributes::default(),
             format,
             notes: Vec::new(),
         }
+    }
+
+    /// Takes what it says of its faces, texture coordinates among it.
+    #[must_use]
+    pub fn take_attributes(&mut self) -> FaceAttributes {
+        FaceAttributes { uvs: self.corner_uvs.take(), ..std::mem::take(&mut self.attributes) }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Wavefront OBJ.
 
+use crate::attributes::Labels;
 use crate::error::{Fault, Missing, Parsed, Position, ReadErrorKind, check_room};
 use crate::obj_index::{Corner, References};
 use crate::text::{Text, quote, refuse_nul};
-use crate::{CornerUvs, Format, Note, PolygonMesh};
+use crate::{CornerUvs, FaceAttributes, Format, Note, PolygonMesh};
 
 /// Marks a corner without texture coordinate.
 const NO_UV: u32 = u32::MAX;
@@ -51,6 +52,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
     reader.finish()
 }
 
+/// The rest of a line: a name, or several.
+fn rest(text: &mut Text<'_>) -> Vec<u8> {
+    let names: Vec<&[u8]> = std::iter::from_fn(|| text.token()).collect();
+    names.join(&b' ')
+}
+
 struct Reader<'a> {
     mesh: PolygonMesh,
     uvs: CornerUvs,
@@ -60,6 +67,11 @@ struct Reader<'a> {
     vertex_references: References<'a>,
     uv_references: References<'a>,
     polygon: Vec<u32>,
+    materials: Labels,
+    object: Vec<u8>,
+    group: Vec<u8>,
+    groups: Labels,
+    smoothing: Labels,
     left_out: LeftOut,
 }
 
@@ -84,6 +96,11 @@ impl<'a> Reader<'a> {
             vertex_references: References::new("vertex"),
             uv_references: References::new("texture coordinate"),
             polygon: Vec::new(),
+            materials: Labels::default(),
+            object: Vec::new(),
+            group: Vec::new(),
+            groups: Labels::default(),
+            smoothing: Labels::default(),
             left_out: LeftOut::default(),
         }
     }
@@ -100,6 +117,19 @@ impl<'a> Reader<'a> {
                 text.skip_tokens();
             }
             b"p" => self.left_out.points += text.skip_tokens(),
+            b"usemtl" => self.materials.set(rest(text)),
+            b"s" => self.smoothing.set(match rest(text) {
+                off if off == b"off" => b"0".to_vec(),
+                group => group,
+            }),
+            b"o" => {
+                self.object = rest(text);
+                self.groups.set(self.path());
+            }
+            b"g" => {
+                self.group = rest(text);
+                self.groups.set(self.path());
+            }
             name if GROUPING.contains(&name) => {}
             keyword if FREE_FORM.contains(&keyword) => {
                 self.left_out.free_form +=
@@ -109,6 +139,11 @@ impl<'a> Reader<'a> {
             keyword => self.unknown(keyword, line)?,
         }
         Ok(())
+    }
+
+    /// The names of the object and the groups of the next polygon.
+    fn path(&self) -> Vec<u8> {
+        [&self.object[..], &self.group].join(&b'\n')
     }
 
     fn vertex(&mut self, text: &mut Text<'a>) -> Parsed<()> {
@@ -170,6 +205,9 @@ impl<'a> Reader<'a> {
             return Err(Fault::at(Position::Line(line), ReadErrorKind::TooFewCorners { found }));
         }
         self.mesh.polygons.push(&self.polygon);
+        for labels in [&mut self.materials, &mut self.groups, &mut self.smoothing] {
+            labels.push();
+        }
         Ok(())
     }
 
@@ -210,6 +248,12 @@ impl<'a> Reader<'a> {
         }
         self.keep_uvs()?;
         self.write_notes();
+        self.mesh.attributes = FaceAttributes {
+            materials: self.materials.finish(),
+            groups: self.groups.finish(),
+            smoothing: self.smoothing.finish(),
+            uvs: None,
+        };
         Ok(self.mesh)
     }
 

@@ -4,6 +4,8 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::Elements;
 use crate::options::GridSize;
 use crate::surface::Surface;
+#[cfg(feature = "io")]
+use seamstress_io::Attribute;
 use seamstress_mesh::features::{
     EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, creases, sharp_edges,
 };
@@ -33,6 +35,14 @@ pub enum FeatureSource {
     Boundary,
     /// The `l` elements of the OBJ file of the surface: `lines`.
     Lines,
+    /// Edges between faces of different materials in the OBJ file of the surface: `material`.
+    Material,
+    /// Edges between faces of different groups or objects: `group`.
+    Group,
+    /// Edges between faces of different smoothing groups: `smoothing`.
+    Smoothing,
+    /// Edges at which the texture coordinates of the OBJ file of the surface differ on both sides: `uv-seams`.
+    UvSeams,
     /// Edges by their ends, vertices of the input counted from 0: `edges:0-1,1-5`.
     Edges(Vec<[u32; 2]>),
     /// A file of two vertices a line: `pairs:FILE`.
@@ -46,7 +56,7 @@ impl FeatureSource {
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Pairs(file) | Self::Sharp(file) => Some(file),
-            Self::Auto | Self::Angle(_) | Self::Boundary | Self::Lines | Self::Edges(_) => None,
+            _ => None,
         }
     }
 }
@@ -60,6 +70,10 @@ impl FromStr for FeatureSource {
             ("auto", "") => Ok(Self::Auto),
             ("lines", "") => Ok(Self::Lines),
             ("boundary", "") => Ok(Self::Boundary),
+            ("material", "") => Ok(Self::Material),
+            ("group", "") => Ok(Self::Group),
+            ("smoothing", "") => Ok(Self::Smoothing),
+            ("uv-seams", "") => Ok(Self::UvSeams),
             ("angle", degrees) => match degrees.parse::<f64>() {
                 Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(Self::Angle(degrees)),
                 _ => Err("expected degrees, more than 0 and at most 180, after `angle:`".into()),
@@ -70,7 +84,7 @@ impl FromStr for FeatureSource {
             ("pairs", file) if !file.is_empty() => Ok(Self::Pairs(file.into())),
             ("sharp", file) if !file.is_empty() => Ok(Self::Sharp(file.into())),
             _ => {
-                Err("expected auto, angle:DEGREES, boundary, lines, edges:A-B, pairs:FILE or sharp:FILE"
+                Err("expected auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B, pairs:FILE or sharp:FILE"
                     .into())
             }
         }
@@ -90,6 +104,10 @@ impl fmt::Display for FeatureSource {
             Self::Angle(degrees) => write!(f, "angle:{degrees}"),
             Self::Boundary => f.write_str("boundary"),
             Self::Lines => f.write_str("lines"),
+            Self::Material => f.write_str("material"),
+            Self::Group => f.write_str("group"),
+            Self::Smoothing => f.write_str("smoothing"),
+            Self::UvSeams => f.write_str("uv-seams"),
             Self::Edges(edges) => {
                 let edges: Vec<String> = edges.iter().map(|[a, b]| format!("{a}-{b}")).collect();
                 write!(f, "edges:{}", edges.join(","))
@@ -115,7 +133,7 @@ impl schemars::JsonSchema for FeatureSource {
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         schemars::json_schema!({
             "type": "string",
-            "description": "auto, angle:DEGREES, boundary, lines, edges:A-B,C-D, pairs:FILE or sharp:FILE",
+            "description": "auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B,C-D, pairs:FILE or sharp:FILE",
         })
     }
 }
@@ -524,10 +542,18 @@ impl<'a> Namer<'a> {
                     lines.map(|l| Named { pair: self.side(l.face, l.side), name: at_line(l.line) });
                 self.find(Some(&file.display().to_string()), named.collect())
             }
-            #[cfg(not(feature = "io"))]
-            FeatureSource::Pairs(_) | FeatureSource::Sharp(_) => {
-                Err(Error::options(format!("features: {source} needs the feature `io`")))
+            #[cfg(feature = "io")]
+            FeatureSource::Material => self.borders(Attribute::Material, "`usemtl` statements"),
+            #[cfg(feature = "io")]
+            FeatureSource::Group => self.borders(Attribute::Group, "`g` or `o` statements"),
+            #[cfg(feature = "io")]
+            FeatureSource::Smoothing => self.borders(Attribute::Smoothing, "`s` statements"),
+            #[cfg(feature = "io")]
+            FeatureSource::UvSeams => {
+                self.borders(Attribute::Uvs, "a texture coordinate at every corner")
             }
+            #[cfg(not(feature = "io"))]
+            _ => Err(Error::options(format!("features: {source} needs the feature `io`"))),
         }
     }
 
@@ -539,6 +565,25 @@ impl<'a> Namer<'a> {
         }
         let named = |&pair: &[u32; 2]| Named { pair: Ok(pair), name: "an `l` element".into() };
         Ok(lines.iter().map(named).collect())
+    }
+
+    /// The edges at which an attribute differs on both sides.
+    #[cfg(feature = "io")]
+    fn borders(&self, attribute: Attribute, statements: &str) -> Result<EdgeSet, Error> {
+        let parts = self.surface.parts();
+        if !parts.attributes.has(attribute) {
+            let text =
+                format!("these features need an OBJ file with {statements}, and this has none");
+            return Err(Error::new(ErrorKind::BadFeatures, text).of(self.surface.input()));
+        }
+        let merged = parts.merged_into.as_deref();
+        let now = |&v: &u32| merged.map_or(v, |into| into[v as usize]);
+        let polygons: Vec<Vec<u32>> =
+            parts.polygons.iter().map(|polygon| polygon.iter().map(now).collect()).collect();
+        let borders = parts.attributes.borders(polygons.iter().map(Vec::as_slice), attribute);
+        // Repairs may have dropped a polygon at such an edge.
+        let edges = borders.into_iter().filter_map(|pair| self.finder.find(pair).ok()).flatten();
+        Ok(EdgeSet::new(self.surface.mesh(), edges))
     }
 
     /// The ends of a side of a polygon of the input.
@@ -605,6 +650,10 @@ mod tests {
             "angle:0.5",
             "boundary",
             "lines",
+            "material",
+            "group",
+            "smoothing",
+            "uv-seams",
             "edges:0-1,4-2",
             "pairs:a b.txt",
             "sharp:C:\\x.sharp",

@@ -111,6 +111,9 @@ pub(crate) struct Parts {
     pub(crate) polygons: Polygons,
     /// Segments of the `l` elements of an OBJ file.
     pub(crate) lines: Vec<[u32; 2]>,
+    /// What the file says of the polygons.
+    #[cfg(feature = "io")]
+    pub(crate) attributes: seamstress_io::FaceAttributes,
     pub(crate) n_input_vertices: usize,
     pub(crate) soup: TriangleSoup,
     /// For each vertex of the input the one that it was merged into; none if no vertices were merged.
@@ -152,12 +155,13 @@ impl Inspection {
     #[cfg(feature = "io")]
     pub(crate) fn of_mesh(
         path: &Path,
-        read: seamstress_io::PolygonMesh,
+        mut read: seamstress_io::PolygonMesh,
         options: &SurfaceOptions,
     ) -> Self {
         let input = Given {
             input: Some(path.display().to_string()),
             format: Some(read.format.to_string()),
+            attributes: read.take_attributes(),
             lines: read.lines,
             notes: read.notes.iter().map(ToString::to_string).collect(),
         };
@@ -209,6 +213,8 @@ impl Inspection {
             input: given.input,
             polygons,
             lines: given.lines,
+            #[cfg(feature = "io")]
+            attributes: given.attributes,
             n_input_vertices: positions.len(),
             soup: checked.soup,
             merged_into: checked.merged_into,
@@ -281,6 +287,8 @@ struct Given {
     input: Option<String>,
     format: Option<String>,
     lines: Vec<[u32; 2]>,
+    #[cfg(feature = "io")]
+    attributes: seamstress_io::FaceAttributes,
     notes: Vec<String>,
 }
 

@@ -26,6 +26,12 @@ pub struct MapOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub features_strict: bool,
 
+    /// Give a curve of features a corner where it turns by so many degrees or more; for quads a turn counts only if it
+    /// lasts for a cell on both sides, so that curves that zigzag along the edges of the mesh are followed smoothly
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = parse::angle,
+        default_value_t = Self::default().corner_angle))]
+    pub corner_angle: f64,
+
     /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
         default_value_t = Self::default().cone_bias))]
@@ -70,6 +76,7 @@ impl Default for MapOptions {
         Self {
             features: Features::default(),
             features_strict: false,
+            corner_angle: method::MapOptions::default().corner_angle,
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
@@ -112,6 +119,11 @@ impl MapOptions {
     /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
     pub fn validate(&self) -> Result<(), Error> {
         self.features.validate()?;
+        if !(self.corner_angle > 0.0 && self.corner_angle <= 180.0) {
+            let text =
+                format!("corner_angle: {} is no angle above 0 and up to 180", self.corner_angle);
+            return Err(Error::options(text));
+        }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;
@@ -129,6 +141,7 @@ impl MapOptions {
         options.rounding.corner_weight = self.corner_weight;
         options.cone_price = self.cone_price;
         options.strict_features = self.features_strict;
+        options.corner_angle = self.corner_angle;
         options.polish = (!self.no_tau_polish).then_some(PolishOptions {
             max_energy_rise: self.max_energy_rise,
             time_limit: self.polish_time,
@@ -419,6 +432,13 @@ pub(crate) mod parse {
         }
     }
 
+    pub(crate) fn angle(text: &str) -> Result<f64, String> {
+        match text.parse::<f64>() {
+            Ok(x) if x > 0.0 && x <= 180.0 => Ok(x),
+            _ => Err("expected degrees, more than 0 and at most 180".into()),
+        }
+    }
+
     pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
         let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
         positive
@@ -454,7 +474,8 @@ mod tests {
     fn unknown_and_impossible_options_are_named() {
         let unknown = serde_json::from_str::<MapOptions>(r#"{"cone_bais": 1}"#).unwrap_err();
         assert!(unknown.to_string().contains("cone_bais"), "{unknown}");
-        let cases: [(MapOptions, &str); 4] = [
+        let cases: [(MapOptions, &str); 5] = [
+            (MapOptions { corner_angle: 0.0, ..Default::default() }, "corner_angle"),
             (MapOptions::default().cone_bias(-1.0), "cone_bias"),
             (MapOptions::default().cone_price(f64::NAN), "cone_price"),
             (MapOptions::default().features(Features::angle(0.0)), "features"),

@@ -133,8 +133,14 @@ fn what_is_small_for_a_grid_is_left_out() {
 }
 
 #[test]
-fn stairs_of_voxels_are_blocks() {
-    let cells = [[0, 0, 0], [1, 0, 0], [1, 0, 1]];
-    let (mesh, edges) = found(&voxel_surface(&cells), 1000.0);
-    assert_eq!(edges, sharp_edges(&mesh, &voxel_surface(&cells).positions, 1.0));
+fn steps_of_voxels_are_creases_of_a_grid_as_fine() {
+    let range = -4..=4i32;
+    let cube = range
+        .clone()
+        .flat_map(|x| range.clone().flat_map(move |y| (-4..=4).map(move |z| [x, y, z])));
+    let ball: Vec<[i32; 3]> = cube.filter(|c| c.iter().map(|x| x * x).sum::<i32>() <= 18).collect();
+    let ball = voxel_surface(&ball);
+    let (mesh, all) = found(&ball, 5000.0);
+    assert_eq!(all, sharp_edges(&mesh, &ball.positions, 1.0));
+    assert!(found(&ball, 60.0).1.is_empty());
 }

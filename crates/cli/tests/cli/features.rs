@@ -76,6 +76,52 @@ fn sources_add_up() {
 }
 
 #[test]
+fn borders_of_what_the_file_says_of_its_faces() {
+    let folder = Folder::new();
+    // A strip of three squares; faces are split into triangles, whose diagonals are no borders.
+    let points: String = (0..4).map(|x| format!("v {x} 0 0\nv {x} 1 0\n")).collect();
+    let faces = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\ng a\ns 1\nf 1/1 3/2 4/3 2/4\nusemtl b\n\
+                 f 3/2 5/1 6/4 4/3\ng b\ns 2\nf 5/2 7/1 8/4 6/3\n";
+    folder.write("in.obj", points + faces);
+    let ends = |source: &str| {
+        let found = features(&folder, &["in.obj", "--features", source]);
+        found["curves"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c["vertices"].clone())
+            .collect::<Vec<_>>()
+    };
+    let [first, second] = [serde_json::json!([2, 3]), serde_json::json!([4, 5])];
+    assert_eq!(ends("material"), [first]);
+    for source in ["group", "smoothing", "uv-seams"] {
+        assert_eq!(ends(source), std::slice::from_ref(&second), "{source}");
+    }
+    folder.write_obj("in.obj", &testkit::cube());
+    refuse(&folder, "material", "need an OBJ file with `usemtl` statements");
+    refuse(&folder, "uv-seams", "need an OBJ file with a texture coordinate at every corner");
+}
+
+#[test]
+fn quads_follow_creases_and_rims_unless_told_otherwise() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::l_bracket());
+    let aligned = |more: &[&str]| {
+        let quad = ["quad", "in.obj", "--quads", "136", "-o", "q.obj", "--json"];
+        let run = folder.expect(0, &[&quad, more].concat());
+        let report: Value = serde_json::from_str(&run.stdout).unwrap();
+        report["features"]["kept"].as_u64()
+    };
+    assert_eq!(aligned(&[]), Some(36));
+    assert_eq!(aligned(&["--features", "none"]), None);
+    assert_eq!(aligned(&["--features", "edges:0-1"]), Some(1));
+    assert_eq!(aligned(&["--features", "edges:0-1", "--features", "auto"]), Some(36));
+    folder.expect(0, &["map", "in.obj", "-o", "m.obj"]);
+    let found = features(&folder, &["in.obj", "m.obj"]);
+    assert_eq!(found, Value::Null);
+}
+
+#[test]
 fn faces_of_a_sharp_file_are_those_of_the_file() {
     let folder = Folder::new();
     // A quad and a triangle: after the split the triangle is face 2.

@@ -10,6 +10,7 @@ use super::{Curve, EdgeSet, FeatureGraph, NodeKind};
 use crate::ids::{Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
 use crate::metric::Metric;
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_4, PI};
 
 const fn degrees(angle: f64) -> f64 {
@@ -73,6 +74,10 @@ const CLEAR: f64 = 0.5;
 /// Fewest edges of clear creases: around a spike, or a triangle that sticks out, there are fewer.
 const ROUND: usize = 6;
 
+/// Creases that hang together and go from crossing to crossing in less than so many cells, for most of their length, are
+/// finer than the grid: the steps of voxels, for instance, for two thirds of it. Those of CAD models do for a third at most.
+const FINE: f64 = 1.5;
+
 /// The creases of a surface that a grid with cells of an edge length, mesh units, should follow. Boundary edges are none.
 pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f64) -> EdgeSet {
     let cell = cell / metric.unit;
@@ -80,7 +85,7 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let found = shape.clear_chains();
     let found = shape.through_gaps(&found);
     let found = shape.without_short_ends(found, cell);
-    shape.without_specks(&found, SPECK * cell)
+    shape.without_specks(&found, cell)
 }
 
 /// A surface and how it bends at its edges.
@@ -270,10 +275,33 @@ impl<'a> Shape<'a> {
         }
     }
 
-    /// Removes creases that hang together and are shorter than a length in all, unless they are clear.
-    fn without_specks(&self, creases: &EdgeSet, shortest: f64) -> EdgeSet {
+    /// Removes creases that hang together and are specks, or finer than the grid.
+    fn without_specks(&self, creases: &EdgeSet, cell: f64) -> EdgeSet {
+        let chains = FeatureGraph::chains(self.mesh, self.metric, creases).curves;
+        let is_fine = |chain: &&Curve| !chain.is_loop && self.length(&chain.edges) < FINE * cell;
+        let fine = chains.iter().filter(is_fine);
+        let fine = EdgeSet::new(self.mesh, fine.flat_map(|chain| chain.edges.iter().copied()));
+        let is_kept = |group: &[Halfedge]| {
+            let is_clear =
+                || group.len() >= ROUND && self.mean(group, |h| self.clutter(h)) <= CLEAR;
+            let share_fine = self.mean(group, |h| f64::from(u8::from(fine.contains(h))));
+            let lasts = self.length(group) >= SPECK * cell || is_clear();
+            lasts && share_fine <= 0.5 && !self.is_triangle(group)
+        };
+        let kept = self.groups(creases).into_iter().filter(|group| is_kept(group));
+        EdgeSet::new(self.mesh, kept.flatten())
+    }
+
+    /// Whether edges are the sides of a triangle: what sticks out there is no larger than the mesh resolves.
+    fn is_triangle(&self, edges: &[Halfedge]) -> bool {
+        let ends = edges.iter().flat_map(|&h| [self.mesh.origin(h), self.mesh.tip(h)]);
+        edges.len() == 3 && ends.collect::<BTreeSet<_>>().len() == 3
+    }
+
+    /// The edges of creases that hang together, group by group.
+    fn groups(&self, creases: &EdgeSet) -> Vec<Vec<Halfedge>> {
         let mut is_seen = VertexData::filled(self.mesh.n_vertices(), false);
-        let mut kept = Vec::new();
+        let mut groups = Vec::new();
         for &first in creases.edges() {
             let mut group = Vec::new();
             let mut ahead = vec![self.mesh.origin(first)];
@@ -287,13 +315,9 @@ impl<'a> Shape<'a> {
                     group.extend((self.mesh.origin(h) == v).then_some(h));
                 }
             }
-            let is_clear =
-                || group.len() >= ROUND && self.mean(&group, |h| self.clutter(h)) <= CLEAR;
-            if self.length(&group) >= shortest || is_clear() {
-                kept.extend(group);
-            }
+            groups.push(group);
         }
-        EdgeSet::new(self.mesh, kept)
+        groups
     }
 }
 

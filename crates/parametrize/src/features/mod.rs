@@ -2,11 +2,13 @@
 
 mod bounds;
 mod conflicts;
+mod corners;
 mod sectors;
 
 pub use bounds::{QUARTERS_PER_CORNER, index_bounds};
 pub(crate) use conflicts::released;
 pub use conflicts::{ReleaseReason, ReleasedFeature};
 pub(crate) use conflicts::{drop_conflicts, release_near};
+pub use corners::CornerRule;
 pub(crate) use sectors::LARGEST_INDEX;
 pub use sectors::{Road, Sectors};

@@ -1,10 +1,10 @@
 //! Sectors: the fans of corners between aligned edges, on which indices live.
 
 use super::bounds::index_bounds;
+use super::corners::{CornerRule, Curves};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::borrow::Cow;
-use std::f64::consts::FRAC_PI_2;
 
 /// What the layout asks of the angle of a sector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,6 +68,17 @@ impl<'m> Sectors<'m> {
     /// Slits a mesh along its feature edges; the metric tells which angles the corners would like.
     #[must_use]
     pub fn new(mesh: &'m TriMesh, metric: &Metric, features: &EdgeSet) -> Self {
+        Self::with_corners(mesh, metric, features, CornerRule::default())
+    }
+
+    /// The same with corners by a rule.
+    #[must_use]
+    pub fn with_corners(
+        mesh: &'m TriMesh,
+        metric: &Metric,
+        features: &EdgeSet,
+        rule: CornerRule,
+    ) -> Self {
         if features.is_empty() {
             return Self::unaligned(mesh);
         }
@@ -90,13 +101,16 @@ impl<'m> Sectors<'m> {
             }
         });
         let kind: VertexData<Kind> = kind.collect();
-        let curvature = metric.curvature(&slit);
+        let turn = metric.curvature(&slit);
+        let goes_on = slit.vertices().map(|s| kind[s] == Kind::Corner && degree[vertex[s]] == 2);
+        let goes_on: VertexData<bool> = goes_on.collect();
+        let curves = Curves { slit: &slit, metric, turn: &turn, goes_on: &goes_on };
         let preferred = slit.vertices().map(|s| {
             let (low, high) = bounds(&slit, s);
             match kind[s] {
                 Kind::Interior | Kind::Free => 0,
                 Kind::OpenEnd => (-2).clamp(low, high),
-                Kind::Corner => ((curvature[s] / FRAC_PI_2).round() as i32).clamp(low, high),
+                Kind::Corner => curves.quarters(s, rule).clamp(low, high),
             }
         });
         let preferred = preferred.collect();

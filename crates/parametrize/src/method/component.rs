@@ -24,7 +24,7 @@ pub(super) fn map_component(
     let positions = piece.positions(positions);
     let metric = Metric::from_positions(mesh, &positions);
     let features = features.restrict(piece);
-    let mut domain = Domain::new(mesh, &positions, &metric, features, options.largest_index());
+    let mut domain = Domain::new(mesh, &positions, &metric, features, options);
     loop {
         match unless_cancelled(parametrize(domain.clone(), start, options, watch))? {
             Ok(map) => return Ok(map),

@@ -1,7 +1,8 @@
 //! What a connected mesh is mapped in: its metric, and the edges that are to run along the axes.
 
+use super::MapOptions;
 use crate::cut::Unfolding;
-use crate::features::{ReleasedFeature, Sectors, drop_conflicts, release_near};
+use crate::features::{CornerRule, ReleasedFeature, Sectors, drop_conflicts, release_near};
 use crate::layout::exact::{Defects, ExactLayout};
 use crate::layout::ladder::SeamlessLayout;
 use num_complex::Complex64;
@@ -32,6 +33,8 @@ pub(super) struct Domain<'m> {
     pub(super) released: Vec<ReleasedFeature>,
     /// Largest index of a cone, quarters.
     largest_index: i32,
+    /// Where aligned curves have corners.
+    corners: CornerRule,
     /// How often features near defects were dropped.
     rounds: usize,
 }
@@ -43,10 +46,13 @@ impl<'m> Domain<'m> {
         positions: &[[f64; 3]],
         surface: &'m Metric,
         features: EdgeSet,
-        largest_index: i32,
+        options: &MapOptions,
     ) -> Self {
+        let largest_index = options.largest_index();
+        let corners = options.corners(surface);
         let (features, released) = drop_conflicts(mesh, positions, surface, features);
-        let sectors = Sectors::new(mesh, surface, &features).with_largest_index(largest_index);
+        let sectors = Sectors::with_corners(mesh, surface, &features, corners)
+            .with_largest_index(largest_index);
         Self {
             sectors,
             surface,
@@ -54,6 +60,7 @@ impl<'m> Domain<'m> {
             lengthening: 0.0,
             released,
             largest_index,
+            corners,
             rounds: 0,
         }
     }
@@ -107,7 +114,7 @@ impl<'m> Domain<'m> {
 
     fn without_features_near(&self, near: VertexData<bool>, rings: usize) -> Self {
         let (kept, more) = release_near(self.mesh(), near, rings, &self.features());
-        let sectors = Sectors::new(self.mesh(), self.surface, &kept);
+        let sectors = Sectors::with_corners(self.mesh(), self.surface, &kept, self.corners);
         let sectors = sectors.with_largest_index(self.largest_index);
         let released = [&self.released[..], &more].concat();
         Self { sectors, released, rounds: self.rounds + 1, ..self.clone() }

@@ -1,10 +1,11 @@
 //! Settings of the direct method.
 
-use crate::features::LARGEST_INDEX;
+use crate::features::{CornerRule, LARGEST_INDEX};
 use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::map::Tolerance;
 use crate::rounding::RoundingOptions;
+use seamstress_mesh::Metric;
 
 /// What a map is for, which decides what its cones may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,6 +34,9 @@ pub struct MapOptions {
     /// cones as they were rounded. None: 0.0006; for quads the share of the surface that four of them have, but at
     /// least 0.0015.
     pub cone_price: Option<f64>,
+    /// The least turn of a corner of aligned curves, degrees: in itself, and for quads from the mean direction over a
+    /// cell before it to that after it.
+    pub corner_angle: f64,
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`](super::MapError::Released)) rather than a
     /// line in the result.
     pub strict_features: bool,
@@ -51,6 +55,7 @@ impl Default for MapOptions {
             rounding: RoundingOptions::default(),
             purpose: Purpose::default(),
             cone_price: None,
+            corner_angle: 45.0,
             strict_features: false,
             polish: Some(PolishOptions::default()),
             objective: None,
@@ -60,6 +65,15 @@ impl Default for MapOptions {
 }
 
 impl MapOptions {
+    /// Where aligned curves have corners.
+    pub(super) fn corners(&self, metric: &Metric) -> CornerRule {
+        let reach = match self.purpose {
+            Purpose::Texture => 0.0,
+            Purpose::Quads { edge_length } => edge_length / metric.unit,
+        };
+        CornerRule { least: self.corner_angle / 90.0, reach }
+    }
+
     /// Largest index of a cone that is not prescribed, quarters.
     pub(super) fn largest_index(&self) -> i32 {
         match self.purpose {
