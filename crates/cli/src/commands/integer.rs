@@ -20,7 +20,7 @@ Examples:
   seamstress integer bunny.ply --quads 5000 -o grid.obj
   seamstress integer bunny.ply bunny.obj --edge-length 0.02 -o grid.obj
   seamstress integer part.off --scale 4 -o grid.obj --pictures part
-  seamstress integer part.off --quads 3000 --features angle:40 --align-boundary -o grid.obj
+  seamstress integer part.off --quads 3000 --features angle:20 --features boundary -o grid.obj
   seamstress integer part.off --quads 800 -o grid.obj --json | jq .grid";
 
 /// Make an integer-grid map: a seamless map whose unit squares close up over the surface

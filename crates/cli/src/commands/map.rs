@@ -18,7 +18,7 @@ Examples:
   seamstress map bunny.ply -o bunny.obj
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
-  seamstress map part.obj -o part_map.obj --features angle:40 --align-boundary
+  seamstress map part.obj -o part_map.obj --features angle:40 --features boundary
   seamstress map part.off -o part.obj --json | jq .distortion.tau
   seamstress lab map eight.off -o eight.obj --field eight.rawfield
   seamstress lab map eight.off -o eight.obj --cones eight.sing --free-cones

@@ -18,7 +18,7 @@ const EXAMPLES: &str = "\
 Examples:
   seamstress quad bunny.ply --quads 5000 -o quads.obj
   seamstress quad bunny.ply --edge-length 0.02 -o quads.ply --picture quads.png
-  seamstress quad part.off --quads 3000 -o quads.obj --features angle:20 --align-boundary
+  seamstress quad part.off --quads 3000 -o quads.obj --features angle:20 --features boundary
   seamstress quad scan.stl --quads 800 -o quads.obj --repair --time-limit 60";
 
 /// Make a quad mesh of a triangle mesh
