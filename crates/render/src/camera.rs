@@ -4,7 +4,7 @@ use crate::RenderError;
 use crate::raster::ScreenPoint;
 use crate::vec3::{Vec3, add, area_normal, cross, dot, scale, sub, unit};
 
-/// The side from which a surface is seen. The `y` axis points up in the picture.
+/// The side from which a surface is seen, once its axes are turned so that `y` points up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum View {
     /// Three-quarter view from the front: the positive `z` side, or the broad side of a mesh that
@@ -15,6 +15,29 @@ pub enum View {
     Back,
     /// From the side this vector points to, seen from the mesh.
     Direction([f64; 3]),
+}
+
+/// The axis of a mesh that points up in the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Up {
+    /// `z` is level and points to the front.
+    X,
+    /// `z` is level and points to the front.
+    #[default]
+    Y,
+    /// `y` is level and points to the back.
+    Z,
+}
+
+impl Up {
+    /// Turns space so that this axis becomes `y`.
+    pub(crate) fn turn(self, [x, y, z]: Vec3) -> Vec3 {
+        match self {
+            Self::X => [-y, x, z],
+            Self::Y => [x, y, z],
+            Self::Z => [x, z, -y],
+        }
+    }
 }
 
 /// How depth foreshortens.
@@ -295,6 +318,17 @@ mod tests {
             let front = Spread::of(&wall, &[[0, 1, 2], [0, 2, 3]]).front().to_degrees();
             let off = (front - expected).rem_euclid(180.0);
             assert!(off.min(180.0 - off) < 1e-6, "{front} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn turns_bring_their_axis_up_and_keep_handedness() {
+        for (up, axis) in
+            [(Up::X, [1.0, 0.0, 0.0]), (Up::Y, [0.0, 1.0, 0.0]), (Up::Z, [0.0, 0.0, 1.0])]
+        {
+            assert_eq!(up.turn(axis), UP);
+            let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|a| up.turn(a));
+            assert_eq!(cross(x, y), z, "{up:?}");
         }
     }
 

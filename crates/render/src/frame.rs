@@ -1,9 +1,9 @@
-//! The loop over bands of rows, and the average from samples to pixels.
+//! The loop over bands of rows, and the mean from samples to pixels.
 
 use seamstress_parallel::prelude::*;
 
 use crate::image::to_srgb8;
-use crate::raster::{Band, Window};
+use crate::raster::{Band, EMPTY, FIRST_OVERLAY, Window};
 use crate::{Image, RenderError};
 
 /// The longest side of a picture, in pixels.
@@ -26,8 +26,17 @@ pub(crate) struct Raster {
 pub(crate) trait Painter: Sync {
     /// Decides what each sample of the band shows.
     fn draw(&self, band: &mut Band);
-    /// The colours of one row of samples, in linear light.
-    fn shade(&self, band: &Band, row: usize, colors: &mut [[f32; 3]]);
+    /// What colours patches of samples, in linear light, by the id that they show.
+    fn shader(&self) -> impl FnMut(u32, Patch) -> [f32; 3];
+}
+
+/// Samples of a pixel that are coloured together.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Patch {
+    /// The mean of their centres.
+    pub(crate) at: [f64; 2],
+    /// The side of the square that the colour is a mean over, in samples.
+    pub(crate) side: f64,
 }
 
 impl Raster {
@@ -74,24 +83,54 @@ impl Raster {
                 rows: count * factor,
             });
             painter.draw(&mut band);
-            let mut colors = vec![[0.0; 3]; width * factor];
-            let mut sums = vec![[0.0; 3]; width];
-            for (pixel_row, out) in bytes.chunks_mut(3 * width).enumerate() {
-                sums.fill([0.0; 3]);
-                for row in pixel_row * factor..(pixel_row + 1) * factor {
-                    painter.shade(&band, row, &mut colors);
-                    for (sum, samples) in sums.iter_mut().zip(colors.chunks(factor)) {
-                        for color in samples {
-                            (0..3).for_each(|c| sum[c] += color[c]);
-                        }
-                    }
+            let mut shader = painter.shader();
+            let mut ids = vec![EMPTY; factor * factor];
+            for (index, pixel) in bytes.chunks_mut(3).enumerate() {
+                let corner = [index % width * factor, index / width * factor];
+                for (row, ids) in ids.chunks_mut(factor).enumerate() {
+                    let samples = &band.ids(corner[1] + row)[corner[0]..];
+                    ids.copy_from_slice(&samples[..factor]);
                 }
-                let weight = 1.0 / (factor * factor) as f32;
-                for (pixel, sum) in out.chunks_mut(3).zip(&sums) {
-                    (0..3).for_each(|c| pixel[c] = to_srgb8(sum[c] * weight));
-                }
+                let corner = [corner[0] as f64, band.centre(corner[1]) - 0.5];
+                let color = pixel_color(&ids, factor, corner, &mut shader);
+                pixel.copy_from_slice(&color.map(to_srgb8));
             }
         });
         Image::from_rows(self.size[0], self.size[1], pixels)
     }
+}
+
+/// The mean colour of a pixel, of which `ids` has `factor` rows of samples and `corner` is the upper left corner.
+///
+/// Light and texture change little within a pixel, so the samples that show one face get one colour; those of overlays,
+/// which may be smaller than a pixel, get one each.
+fn pixel_color(
+    ids: &[u32],
+    factor: usize,
+    corner: [f64; 2],
+    shader: &mut impl FnMut(u32, Patch) -> [f32; 3],
+) -> [f32; 3] {
+    let side = factor as f64;
+    let first = ids[0];
+    if (first < FIRST_OVERLAY || first == EMPTY) && ids.iter().all(|&id| id == first) {
+        return shader(first, Patch { at: corner.map(|x| x + 0.5 * side), side });
+    }
+    let centre =
+        |k: usize| [corner[0] + (k % factor) as f64 + 0.5, corner[1] + (k / factor) as f64 + 0.5];
+    let mut sum = [0.0; 3];
+    for (k, &id) in ids.iter().enumerate() {
+        let (patch, count) = if id >= FIRST_OVERLAY {
+            (Patch { at: centre(k), side: 1.0 }, 1.0)
+        } else if ids[..k].contains(&id) {
+            continue;
+        } else {
+            let same = (k..ids.len()).filter(|&l| ids[l] == id).map(centre);
+            let (total, count) =
+                same.fold(([0.0; 2], 0.0), |([x, y], n), [a, b]| ([x + a, y + b], n + 1.0));
+            (Patch { at: total.map(|x| x / count), side }, count)
+        };
+        let color = shader(id, patch);
+        (0..3).for_each(|c| sum[c] += color[c] * count as f32);
+    }
+    sum.map(|c| c / ids.len() as f32)
 }

@@ -1,12 +1,12 @@
 //! The picture of a map in the plane of its UVs.
 
-use crate::frame::{Painter, Raster};
+use crate::frame::{Painter, Patch, Raster};
 use crate::image::to_linear;
 use crate::interpolate::Barycentric;
 use crate::normalize::Normalizer;
 use crate::paint::{Coat, FaceCoat, Paint, signed_area};
 use crate::palette::{Palette, hex};
-use crate::raster::{Band, EMPTY, ScreenPoint, range};
+use crate::raster::{Band, EMPTY, FIRST_OVERLAY, ScreenPoint, range};
 use crate::scene::{Scene, check_finite};
 use crate::surface::{FEATURE_WIDTH, check_fractions};
 use crate::topology::{edges, matched_corners, next_corner, sorted_sides};
@@ -38,7 +38,7 @@ pub struct LayoutOptions {
 impl Default for LayoutOptions {
     fn default() -> Self {
         Self {
-            size: [1200, 1200],
+            size: [1000, 1000],
             paint: Paint::Plain(hex(0xeeeae1)),
             supersampling: 3,
             margin: 0.03,
@@ -61,7 +61,6 @@ const OUTLINE: u32 = EMPTY - 1;
 const FLIPPED: u32 = EMPTY - 2;
 const FEATURE: u32 = EMPTY - 3;
 const RELEASED: u32 = EMPTY - 4;
-const FIRST_CONE: u32 = 1 << 31;
 
 /// Draws the UVs of a scene in their plane, `v` upwards.
 ///
@@ -298,41 +297,38 @@ impl Painter for LayoutPicture<'_> {
         if self.dot_radius > 0.0 {
             for (index, (centre, _)) in self.dots.iter().enumerate() {
                 let centre = ScreenPoint { depth: 2.0, ..*centre };
-                band.draw_ball(centre, self.dot_radius, 0.0, FIRST_CONE + index as u32);
+                band.draw_ball(centre, self.dot_radius, 0.0, FIRST_OVERLAY + index as u32);
             }
         }
     }
 
-    fn shade(&self, band: &Band, row: usize, colors: &mut [[f32; 3]]) {
-        let y = band.centre(row);
+    fn shader(&self) -> impl FnMut(u32, Patch) -> [f32; 3] {
         let mut current = EMPTY;
         let mut shader = None;
-        for (column, (&id, color)) in band.ids(row).iter().zip(colors).enumerate() {
-            let x = column as f64 + 0.5;
-            *color = match id {
-                EMPTY => self.background,
-                OUTLINE => self.outline,
-                FLIPPED => self.flipped_color,
-                FEATURE => self.feature_color,
-                RELEASED => self.released_color,
-                dot if dot >= FIRST_CONE => {
-                    let (centre, color) = self.dots[(dot - FIRST_CONE) as usize];
-                    let reach = (x - centre.x).hypot(y - centre.y);
-                    if reach > 0.8 * self.dot_radius { self.background } else { color }
+        move |id, patch| match id {
+            EMPTY => self.background,
+            OUTLINE => self.outline,
+            FLIPPED => self.flipped_color,
+            FEATURE => self.feature_color,
+            RELEASED => self.released_color,
+            dot if dot >= FIRST_OVERLAY => {
+                let (centre, color) = self.dots[(dot - FIRST_OVERLAY) as usize];
+                let [x, y] = patch.at;
+                let reach = (x - centre.x).hypot(y - centre.y);
+                if reach > 0.8 * self.dot_radius { self.background } else { color }
+            }
+            face => {
+                if face != current {
+                    current = face;
+                    shader = self.on_face(face as usize);
                 }
-                face => {
-                    if face != current {
-                        current = face;
-                        shader = self.shader(face as usize);
-                    }
-                    shader.as_ref().map_or(self.background, |s| s.color(self, x, y))
-                }
-            };
+                shader.as_ref().map_or(self.background, |s| s.color(self, patch))
+            }
         }
     }
 }
 
-/// A triangle ready to be coloured along a run of samples.
+/// A triangle ready to be coloured.
 struct Shader<'a> {
     barycentric: Barycentric,
     /// Heights over the three edges, in samples.
@@ -361,7 +357,7 @@ fn fade_in(x: f64, [low, high]: [f64; 2]) -> f64 {
 }
 
 impl LayoutPicture<'_> {
-    fn shader(&self, face: usize) -> Option<Shader<'_>> {
+    fn on_face(&self, face: usize) -> Option<Shader<'_>> {
         let barycentric = Barycentric::new(self.corners[face])?;
         let heights = barycentric.heights();
         let pixels = screen_area(self.corners[face]).sqrt() / self.per_pixel;
@@ -375,11 +371,14 @@ impl LayoutPicture<'_> {
 }
 
 impl Shader<'_> {
-    fn color(&self, picture: &LayoutPicture, x: f64, y: f64) -> [f32; 3] {
+    fn color(&self, picture: &LayoutPicture, Patch { at: [x, y], side }: Patch) -> [f32; 3] {
         let weights = self.barycentric.at(x, y);
-        let fill = self.coat.color(&weights);
+        let fill = self.coat.color(&weights, side);
         let nearest = (0..3).fold(f64::INFINITY, |d, k| d.min(weights.value[k] * self.heights[k]));
-        let covered = (picture.edge_half_width + 0.5 - nearest).clamp(0.0, 1.0);
+        // The part of the patch on the edge, as if the edge ran along a side of it.
+        let (half, reach) = (picture.edge_half_width, 0.5 * side);
+        let across = half.min(nearest + reach) - (-half).max(nearest - reach);
+        let covered = (across / side).clamp(0.0, 1.0);
         let blend = (self.edges * covered) as f32;
         std::array::from_fn(|c| fill[c] + blend * (picture.edge[c] - fill[c]))
     }

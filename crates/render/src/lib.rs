@@ -27,7 +27,7 @@ mod surface;
 mod topology;
 mod vec3;
 
-pub use camera::{Projection, View};
+pub use camera::{Projection, Up, View};
 pub use error::RenderError;
 pub use heat::HeatMap;
 pub use image::Image;

@@ -5,24 +5,25 @@
 
 use seamstress_parallel::prelude::*;
 
+use crate::interpolate::blend;
 use crate::raster::{ScreenPoint, Window};
-use crate::vec3::{Vec3, add, cross, dot, scale, unit};
+use crate::vec3::{Vec3, add, area_normal, cross, dot, scale, unit};
 
 /// Axes of view; each serves two directions.
 const AXES: usize = 16;
 /// Side of a map, in texels.
-const SIDE: usize = 360;
+const SIDE: usize = 256;
 /// Points are lifted off the surface by this many texels, lest it hides itself.
-const LIFT: f64 = 1.5;
+const LIFT: f64 = 1.2;
 /// Depths, in texels, over which light fades to shade.
-const SOFTNESS: f64 = 3.0;
+const SOFTNESS: f64 = 2.5;
 /// What hides a direction from afar, in units of the surface's size, counts for less.
 const NEAR: f64 = 0.25;
 /// The least it counts for.
 const FAR_WEIGHT: f64 = 0.4;
 
 #[derive(Debug)]
-pub(crate) struct Occlusion {
+struct Occlusion {
     maps: Vec<Map>,
     texel: f64,
 }
@@ -37,7 +38,7 @@ struct Map {
 }
 
 impl Occlusion {
-    pub(crate) fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
+    fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
         let used = faces.iter().flatten().map(|&v| positions[v as usize]);
         let radius = used.map(|p| dot(p, p)).fold(0.0, f64::max).sqrt();
         let texel = 2.0 * radius * (1.0 + 1e-6) / SIDE as f64;
@@ -54,31 +55,101 @@ impl Occlusion {
     }
 
     /// The part of the half-space over a point, weighted by the cosine, that is open.
-    ///
-    /// Asks one in `turns` of the directions, beginning with `turn`: the mean over all turns asks
-    /// them all.
-    pub(crate) fn openness(&self, at: Vec3, normal: Vec3, turn: usize, turns: usize) -> f64 {
+    fn openness(&self, at: Vec3, normal: Vec3) -> f64 {
         let lifted = add(at, scale(normal, LIFT * self.texel));
         let (mut open, mut all) = (0.0, 0.0);
-        let step = turns.clamp(1, MAX_TURNS);
-        for direction in (turn % step..2 * AXES).step_by(step) {
-            let (map, sign) = match self.maps.get(direction) {
-                Some(map) => (map, 1.0),
-                None => (&self.maps[2 * AXES - 1 - direction], -1.0),
-            };
-            let cosine = sign * dot(normal, map.axis);
-            if cosine > 0.0 {
-                let beyond = map.beyond(lifted, sign, self.texel);
-                open += cosine * (1.0 - self.shade(beyond));
-                all += cosine;
-            }
+        for map in &self.maps {
+            let cosine = dot(normal, map.axis);
+            let beyond = map.beyond(lifted, cosine.signum(), self.texel);
+            open += cosine.abs() * (1.0 - self.shade(beyond));
+            all += cosine.abs();
         }
         if all > 0.0 { open / all } else { 1.0 }
     }
 }
 
-/// However many rows of samples a pixel has, each asks several directions.
-const MAX_TURNS: usize = 3;
+/// How open the surface lies at the nodes of a grid on each face. It changes slowly, so values in between are blended.
+#[derive(Debug)]
+pub(crate) struct Openness {
+    /// The place of the first value of each face, and the parts into which its sides are cut.
+    grids: Vec<(usize, u32)>,
+    values: Vec<f32>,
+}
+
+/// Sides of a face as large as an equilateral one are cut into parts of about this length, in units of the surface's
+/// size.
+const SPACING: f64 = 0.02;
+/// More nodes than about this are too many, however large the area of a surface that goes through itself.
+const MOST_NODES: f64 = 1e6;
+/// Faces that are prepared together.
+const BLOCK: usize = 1024;
+
+impl Openness {
+    /// For faces whose unit normals at the corners are turned to the viewer.
+    pub(crate) fn new(positions: &[Vec3], faces: &[[u32; 3]], normals: &[[[f32; 3]; 3]]) -> Self {
+        let occlusion = Occlusion::new(positions, faces);
+        let corners = |face: usize| faces[face].map(|v| positions[v as usize]);
+        let areas = (0..faces.len()).map(|face| {
+            let normal = area_normal(corners(face));
+            dot(normal, normal).sqrt()
+        });
+        let spacing = SPACING.max((areas.clone().sum::<f64>() / (2.0 * MOST_NODES)).sqrt());
+        let mut first = 0;
+        let mut grids = Vec::with_capacity(faces.len());
+        for area in areas {
+            let parts = (area.sqrt() / spacing).round() as u32;
+            grids.push((first, parts));
+            first += nodes(parts).count();
+        }
+        let on_face = |face: usize| {
+            let normals = normals[face].map(|n| n.map(f64::from));
+            let (corners, occlusion) = (corners(face), &occlusion);
+            nodes(grids[face].1).map(move |weights| {
+                let normal = unit(blend(weights, &normals)).unwrap_or(normals[0]);
+                occlusion.openness(blend(weights, &corners), normal) as f32
+            })
+        };
+        let blocks: Vec<Vec<f32>> = (0..faces.len().div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|k| (k * BLOCK..faces.len().min((k + 1) * BLOCK)).flat_map(on_face).collect())
+            .collect();
+        Self { values: blocks.concat(), grids }
+    }
+
+    /// The value at a point of a face with the given weights.
+    pub(crate) fn at(&self, face: usize, [_, second, third]: [f64; 3]) -> f64 {
+        let (first, parts) = self.grids[face];
+        let Some(last) = parts.checked_sub(1) else { return f64::from(self.values[first]) };
+        let (x, y) = (second * f64::from(parts), third * f64::from(parts));
+        let i = (x as u32).min(last);
+        let j = (y as u32).min(last - i);
+        let value = |i: u32, j: u32| {
+            // Rows before `i` have `parts + 1`, `parts`, ... nodes.
+            let node = i * (parts + 1) - i * i.saturating_sub(1) / 2 + j;
+            f64::from(self.values[first + node as usize])
+        };
+        let (x, y) = (x - f64::from(i), y - f64::from(j));
+        let (right, up) = (value(i + 1, j), value(i, j + 1));
+        if x + y > 1.0 && i + j < last {
+            let far = value(i + 1, j + 1);
+            far + (1.0 - x) * (up - far) + (1.0 - y) * (right - far)
+        } else {
+            let near = value(i, j);
+            near + x * (right - near) + y * (up - near)
+        }
+    }
+}
+
+/// The weights of the nodes of a triangle with sides cut into parts, row by row; its centre if there is no part.
+fn nodes(parts: u32) -> impl Iterator<Item = [f64; 3]> {
+    let step = 1.0 / f64::from(parts.max(1));
+    (0..=parts).flat_map(move |i| {
+        (0..=parts - i).map(move |j| match parts {
+            0 => [1.0 / 3.0; 3],
+            _ => [f64::from(parts - i - j) * step, f64::from(i) * step, f64::from(j) * step],
+        })
+    })
+}
 
 /// Axes spread evenly over half a sphere, along a spiral.
 fn axis(k: usize) -> Vec3 {
@@ -144,15 +215,31 @@ mod tests {
         let positions = [sheet(-0.03), sheet(0.03)].concat();
         let faces = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
         let occlusion = Occlusion::new(&positions, &faces);
-        let mean = |at, normal| {
-            let turns = (0..9).map(|turn| occlusion.openness(at, normal, turn, 9));
-            turns.sum::<f64>() / 9.0
-        };
-        assert!(mean([0.0, -0.03, 0.0], [0.0, 1.0, 0.0]) < 0.2);
-        assert!(mean([0.0, 0.03, 0.0], [0.0, -1.0, 0.0]) < 0.2);
-        assert!(mean([0.0, 0.03, 0.0], [0.0, 1.0, 0.0]) > 0.99);
-        assert!(mean([0.0, -0.03, 0.0], [0.0, -1.0, 0.0]) > 0.99);
-        let edge = mean([0.99, -0.03, 0.0], [0.0, 1.0, 0.0]);
+        assert!(occlusion.openness([0.0, -0.03, 0.0], [0.0, 1.0, 0.0]) < 0.2);
+        assert!(occlusion.openness([0.0, 0.03, 0.0], [0.0, -1.0, 0.0]) < 0.2);
+        assert!(occlusion.openness([0.0, 0.03, 0.0], [0.0, 1.0, 0.0]) > 0.99);
+        assert!(occlusion.openness([0.0, -0.03, 0.0], [0.0, -1.0, 0.0]) > 0.99);
+        let edge = occlusion.openness([0.99, -0.03, 0.0], [0.0, 1.0, 0.0]);
         assert!((0.3..0.7).contains(&edge), "{edge}");
+    }
+
+    #[test]
+    fn values_between_nodes_are_blended() {
+        // The roof covers half of a floor that is one face.
+        let sheet = |y: f64, right: f64| [[-1.0, y, -1.0], [-1.0, y, 1.0], [right, y, -1.0]];
+        let positions = [sheet(-0.03, 1.0), sheet(0.03, 0.0)].concat();
+        let up = [[0.0, 1.0, 0.0]; 3];
+        let openness = Openness::new(&positions, &[[0, 1, 2], [3, 4, 5]], &[up, up]);
+        let parts = openness.grids[0].1;
+        assert!(parts > 50, "{parts}");
+        for (k, weights) in nodes(parts).enumerate() {
+            let value = f64::from(openness.values[k]);
+            assert!((openness.at(0, weights) - value).abs() < 1e-6, "node {k}");
+        }
+        assert!(openness.at(0, [0.7, 0.15, 0.15]) < 0.2);
+        assert!(openness.at(0, [0.2, 0.1, 0.7]) > 0.8);
+        let between = [0.4, 0.3, 0.3];
+        let around = [[0.41, 0.29, 0.3], [0.39, 0.3, 0.31]].map(|w| openness.at(0, w));
+        assert!((openness.at(0, between) - 0.5 * (around[0] + around[1])).abs() < 0.1);
     }
 }

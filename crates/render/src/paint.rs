@@ -161,15 +161,15 @@ impl Coat<'_> {
 }
 
 impl FaceCoat<'_> {
-    /// The mean colour over a sample with the given weights.
-    pub(crate) fn color(&self, weights: &Weights) -> [f32; 3] {
+    /// The mean colour over a square of the given side, in samples, around a point with the given weights.
+    pub(crate) fn color(&self, weights: &Weights, side: f64) -> [f32; 3] {
         match self {
             Self::Plain(color) => *color,
             Self::Checker { pattern, checks } => {
                 let at = blend(weights.value, checks);
                 let by_x = blend(weights.by_x, checks);
                 let by_y = blend(weights.by_y, checks);
-                pattern.color(at, std::array::from_fn(|k| by_x[k].abs() + by_y[k].abs()))
+                pattern.color(at, std::array::from_fn(|k| side * (by_x[k].abs() + by_y[k].abs())))
             }
         }
     }

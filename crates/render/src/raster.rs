@@ -15,6 +15,8 @@ pub(crate) struct ScreenPoint {
 
 /// The id of a sample that shows nothing.
 pub(crate) const EMPTY: u32 = u32::MAX;
+/// Ids from here on are of lines, balls and dots; those before are of faces.
+pub(crate) const FIRST_OVERLAY: u32 = 1 << 31;
 
 /// Whole rows of samples.
 #[derive(Debug, Clone, Copy)]

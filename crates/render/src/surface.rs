@@ -1,16 +1,16 @@
 //! The picture of a surface in space.
 
-use crate::camera::{Camera, Projection, View};
-use crate::frame::{Painter, Raster};
+use crate::camera::{Camera, Projection, Up, View};
+use crate::frame::{Painter, Patch, Raster};
 use crate::image::to_linear;
 use crate::interpolate::{Barycentric, blend};
 use crate::lighting::Lights;
 use crate::normalize::Normalizer;
 use crate::normals::corner_normals;
-use crate::occlusion::Occlusion;
-use crate::paint::{Coat, FaceCoat, Paint};
+use crate::occlusion::Openness;
+use crate::paint::{Coat, FaceCoat, Paint, signed_area};
 use crate::palette::Palette;
-use crate::raster::{Band, EMPTY, ScreenPoint, range};
+use crate::raster::{Band, EMPTY, FIRST_OVERLAY, ScreenPoint, range};
 use crate::scene::{Scene, check_finite};
 use crate::vec3::{Vec3, add, scale, unit};
 use crate::{Image, RenderError};
@@ -20,6 +20,8 @@ use crate::{Image, RenderError};
 pub struct SurfaceOptions {
     /// Width and height in pixels, at most 8192 each.
     pub size: [u32; 2],
+    /// The axis that points up.
+    pub up: Up,
     /// Where the viewer stands.
     pub view: View,
     /// Perspective or not.
@@ -45,7 +47,8 @@ pub struct SurfaceOptions {
 impl Default for SurfaceOptions {
     fn default() -> Self {
         Self {
-            size: [1200, 1200],
+            size: [1000, 1000],
+            up: Up::default(),
             view: View::Front,
             projection: Projection::default(),
             paint: Paint::checker(None),
@@ -75,7 +78,6 @@ const CORNER_RADIUS: f64 = 0.75;
 const SEAM: u32 = EMPTY - 1;
 const FEATURE: u32 = EMPTY - 2;
 const RELEASED: u32 = EMPTY - 3;
-const FIRST_BALL: u32 = 1 << 31;
 
 /// Draws the surface of a scene.
 ///
@@ -134,10 +136,7 @@ struct SurfacePicture<'a> {
     coat: Coat<'a>,
     camera: Camera,
     lights: Lights,
-    occlusion: Option<(Occlusion, f64)>,
-    /// Samples along the side of a pixel.
-    per_pixel: usize,
-    positions: Vec<Vec3>,
+    occlusion: Option<(Openness, f64)>,
     lines: Vec<Line>,
     balls: Vec<Ball>,
     background: [f32; 3],
@@ -155,7 +154,8 @@ impl<'a> SurfacePicture<'a> {
         let used = scene.faces.iter().flatten();
         let normalizer = Normalizer::fit(used.map(|&v| scene.positions[v as usize]))
             .ok_or(RenderError::NoExtent { what: "positions" })?;
-        let positions: Vec<Vec3> = scene.positions.iter().map(|&p| normalizer.apply(p)).collect();
+        let place = |&p: &Vec3| options.up.turn(normalizer.apply(p));
+        let positions: Vec<Vec3> = scene.positions.iter().map(place).collect();
         let camera = Camera::fit(
             options.view,
             options.projection,
@@ -197,10 +197,17 @@ impl<'a> SurfacePicture<'a> {
             let depth = centre.depth + BALL_LIFT * bulge;
             Ball { centre: ScreenPoint { depth, ..centre }, radius, bulge, color: to_linear(color) }
         });
+        let mut normals = corner_normals(&positions, scene.faces);
+        // Faces seen from behind are lit as if they were turned around.
+        for (normals, face) in normals.iter_mut().zip(scene.faces) {
+            if signed_area(face.map(|v| [at(v).x, at(v).y])) > 0.0 {
+                *normals = normals.map(|n| n.map(|x| -x));
+            }
+        }
+        let openness = |strength| (Openness::new(&positions, scene.faces, &normals), strength);
         Ok(Self {
             faces: scene.faces,
             spans: spans.collect(),
-            normals: corner_normals(&positions, scene.faces),
             coat: options.paint.prepare(scene, &positions)?,
             lights: Lights::new(&camera),
             lines: lines.collect(),
@@ -209,12 +216,10 @@ impl<'a> SurfacePicture<'a> {
             seam: to_linear(palette.seam),
             feature: to_linear(palette.feature),
             released: to_linear(palette.released),
-            occlusion: (options.occlusion > 0.0)
-                .then(|| (Occlusion::new(&positions, scene.faces), options.occlusion)),
-            per_pixel: raster.per_pixel() as usize,
+            occlusion: Some(options.occlusion).filter(|&strength| strength > 0.0).map(openness),
+            normals,
             camera,
             points,
-            positions,
         })
     }
 
@@ -235,7 +240,7 @@ impl<'a> SurfacePicture<'a> {
         LINE_SLACK + (slope[0] * dx + slope[1] * dy).clamp(0.0, GRAZING_SLACK)
     }
 
-    fn shade_ball(&self, ball: &Ball, x: f64, y: f64) -> [f32; 3] {
+    fn shade_ball(&self, ball: &Ball, [x, y]: [f64; 2]) -> [f32; 3] {
         let right = (x - ball.centre.x) / ball.radius;
         let up = (ball.centre.y - y) / ball.radius;
         let back = (1.0 - right * right - up * up).max(0.0).sqrt();
@@ -250,33 +255,24 @@ impl<'a> SurfacePicture<'a> {
     }
 }
 
-/// A face ready to be shaded along a run of samples.
+/// A face ready to be shaded.
 struct Shader<'a> {
-    barycentric: Option<Barycentric>,
-    positions: [Vec3; 3],
+    face: usize,
+    barycentric: Barycentric,
     normals: [[f64; 3]; 3],
     coat: FaceCoat<'a>,
 }
 
 impl Shader<'_> {
-    /// The light on the face at `(x, y)`; `turn` tells the rows of a pixel apart.
-    fn light(&self, picture: &SurfacePicture, [x, y]: [f64; 2], turn: usize) -> Option<f32> {
-        let weights = self.barycentric?.at(x, y);
+    fn color(&self, picture: &SurfacePicture, Patch { at: [x, y], side }: Patch) -> [f32; 3] {
+        let weights = self.barycentric.at(x, y);
         let normal = unit(blend(weights.value, &self.normals)).unwrap_or(self.normals[0]);
-        let light = picture.lights.on(normal);
-        let Some((occlusion, strength)) = &picture.occlusion else { return Some(light) };
-        let at = blend(weights.value, &self.positions);
-        let open = occlusion.openness(at, normal, turn, picture.per_pixel);
-        Some(light * (1.0 - strength * (1.0 - open * open)) as f32)
-    }
-
-    /// The colour at `(x, y)` in this light.
-    fn color(&self, [x, y]: [f64; 2], light: f32) -> Option<[f32; 3]> {
-        let color = match self.coat {
-            FaceCoat::Plain(color) => color,
-            FaceCoat::Checker { .. } => self.coat.color(&self.barycentric?.at(x, y)),
-        };
-        Some(color.map(|c| c * light))
+        let mut light = picture.lights.on(normal);
+        if let Some((openness, strength)) = &picture.occlusion {
+            let open = openness.at(self.face, weights.value);
+            light *= (1.0 - strength * (1.0 - open * open)) as f32;
+        }
+        self.coat.color(&weights, side).map(|c| c * light)
     }
 }
 
@@ -293,57 +289,39 @@ impl Painter for SurfacePicture<'_> {
             });
         }
         for (index, ball) in self.balls.iter().enumerate() {
-            band.draw_ball(ball.centre, ball.radius, ball.bulge, FIRST_BALL + index as u32);
+            band.draw_ball(ball.centre, ball.radius, ball.bulge, FIRST_OVERLAY + index as u32);
         }
     }
 
-    fn shade(&self, band: &Band, row: usize, colors: &mut [[f32; 3]]) {
-        let y = band.centre(row);
+    fn shader(&self) -> impl FnMut(u32, Patch) -> [f32; 3] {
         let mut current = EMPTY;
         let mut shader = None;
-        // Light changes slowly: a face has one in the row of a pixel.
-        let mut light = None;
-        for (column, (&id, color)) in band.ids(row).iter().zip(colors).enumerate() {
-            let x = column as f64 + 0.5;
-            *color = match id {
-                EMPTY => self.background,
-                SEAM => self.seam,
-                FEATURE => self.feature,
-                RELEASED => self.released,
-                ball if ball >= FIRST_BALL => {
-                    self.shade_ball(&self.balls[(ball - FIRST_BALL) as usize], x, y)
+        move |id, patch| match id {
+            EMPTY => self.background,
+            SEAM => self.seam,
+            FEATURE => self.feature,
+            RELEASED => self.released,
+            ball if ball >= FIRST_OVERLAY => {
+                self.shade_ball(&self.balls[(ball - FIRST_OVERLAY) as usize], patch.at)
+            }
+            face => {
+                if face != current {
+                    current = face;
+                    shader = self.on_face(face as usize);
                 }
-                face => {
-                    if face != current {
-                        current = face;
-                        shader = Some(self.shader(face as usize));
-                        light = None;
-                    }
-                    if column % self.per_pixel == 0 {
-                        light = None;
-                    }
-                    let seen = shader.as_ref().and_then(|shader| {
-                        light = light.or_else(|| shader.light(self, [x, y], row % self.per_pixel));
-                        shader.color([x, y], light?)
-                    });
-                    seen.unwrap_or(self.background)
-                }
-            };
+                shader.as_ref().map_or(self.background, |s: &Shader| s.color(self, patch))
+            }
         }
     }
 }
 
 impl SurfacePicture<'_> {
-    /// Faces seen from behind are lit as if they were turned around.
-    fn shader(&self, face: usize) -> Shader<'_> {
-        let [a, b, c] = self.corners(face);
-        let clockwise = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
-        let turn = if clockwise { -1.0 } else { 1.0 };
-        Shader {
-            barycentric: Barycentric::new([a, b, c]),
-            positions: self.faces[face].map(|v| self.positions[v as usize]),
-            normals: self.normals[face].map(|n| n.map(|x| turn * f64::from(x))),
+    fn on_face(&self, face: usize) -> Option<Shader<'_>> {
+        Some(Shader {
+            face,
+            barycentric: Barycentric::new(self.corners(face))?,
+            normals: self.normals[face].map(|n| n.map(f64::from)),
             coat: self.coat.on_face(face),
-        }
+        })
     }
 }
