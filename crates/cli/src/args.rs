@@ -52,18 +52,18 @@ impl RunArgs {
 pub(crate) struct FeatureArgs {
     /// Feature edges, from one of these sources; may be given several times
     ///
-    /// auto           the boundary, and creases found by the shape of the surface
-    /// none           no edge, where `auto` would be the default
-    /// angle:DEGREES  where the surface bends by that much or more
-    /// boundary       the boundary
-    /// lines          the `l` elements of the mesh, an OBJ file
-    /// material       between faces of different materials (`usemtl` in an OBJ file)
-    /// group          between faces of different groups or objects (`g` and `o`)
-    /// smoothing      between faces of different smoothing groups (`s`)
-    /// uv-seams       where the texture coordinates (`vt`) differ on both sides
-    /// edges:A-B,...  edges by their vertices, counted from 0
-    /// pairs:FILE     two vertices a line, counted from 0; # starts a comment
-    /// sharp:FILE     a .sharp file of QuadWild: the count, then `type,face,side` a line
+    ///   auto           the boundary, and creases found by their shape
+    ///   none           no edge, where `auto` would be the default
+    ///   angle:DEGREES  where the surface bends by that much or more
+    ///   boundary       the boundary
+    ///   lines          the `l` elements of the mesh, an OBJ file
+    ///   material       borders of materials (`usemtl` of OBJ files)
+    ///   group          borders of groups and objects (`g` and `o`)
+    ///   smoothing      borders of smoothing groups (`s`)
+    ///   uv-seams       where the `vt` differ on both sides
+    ///   edges:A-B,...  edges by their vertices, counted from 0
+    ///   pairs:FILE     two vertices a line, from 0; # starts a comment
+    ///   sharp:FILE     of QuadWild: count, then `type,face,side` a line
     ///
     /// Vertices and faces are those of the file, also with `--repair`.
     /// The default is `auto` for quads and integer-grid maps of a mesh.

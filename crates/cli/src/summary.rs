@@ -321,15 +321,15 @@ pub(crate) fn quad_warnings(report: &QuadMeshReport) -> Vec<String> {
         let vertices = counted(quads.split_vertices, "vertex");
         lines.push(format!("note: {vertices} added where quads met in a point only"));
     }
-    lines.extend(lost_warning(report));
+    lines.extend(lost_warning(&report.input, &report.quads.components_without_quads));
     lines.extend(folds_text(report).map(|text| format!("warning: {text}")));
     lines.extend(report.orientation.as_ref().and_then(orientation_warning));
     lines
 }
 
 /// Components without quads, and what may give them some.
-fn lost_warning(report: &QuadMeshReport) -> Option<String> {
-    let (lost, all) = (&report.quads.components_without_quads, &report.input.components);
+pub(crate) fn lost_warning(input: &SurfaceReport, lost: &[u32]) -> Option<String> {
+    let all = &input.components;
     if lost.is_empty() {
         return None;
     }
@@ -343,7 +343,7 @@ fn lost_warning(report: &QuadMeshReport) -> Option<String> {
     if components.len() > SHOWN_LOST {
         named.push("...".into());
     }
-    let weld = match report.input.coincident_vertices {
+    let weld = match input.coincident_vertices {
         0 => "",
         _ => ", or `--weld` if pieces should be joined",
     };
@@ -354,7 +354,7 @@ fn lost_warning(report: &QuadMeshReport) -> Option<String> {
         counted(all.len(), "component"),
         named.join(", "),
         faces,
-        counted(report.input.faces, "triangle"),
+        counted(input.faces, "triangle"),
     ))
 }
 

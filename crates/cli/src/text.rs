@@ -53,13 +53,14 @@ pub(crate) fn as_options(text: &str) -> String {
 }
 
 /// Options of the library that its messages name.
-const OPTIONS: [&str; 13] = [
+const OPTIONS: [&str; 14] = [
     "allow_flips",
     "alignment_tolerance",
     "best_effort",
     "cone_bias",
     "exact",
     "features_strict",
+    "format",
     "free_cones",
     "pictures",
     "repair",

@@ -64,6 +64,6 @@ pub use format::{Format, is_compressed};
 pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{CornerUvs, PolygonMesh, Polygons};
 pub use note::Note;
-pub use read::{parse_mesh, read_mesh};
+pub use read::{parse_mesh, read_mesh, read_mesh_as};
 pub use write::{MapObj, write_map_obj};
 pub use write_polygons::Polymesh;

@@ -11,7 +11,7 @@ use crate::error::Count;
 pub enum Note {
     /// The content is of another format than the file name claims; the content decided.
     ExtensionContradicted {
-        /// The format of the name.
+        /// The format of the name, or the one asked for.
         claimed: Format,
         /// The format of the content.
         found: Format,
@@ -94,7 +94,7 @@ impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ExtensionContradicted { claimed, found } => {
-                write!(f, "the name says {claimed}, but the content is {found}; read as {found}")
+                write!(f, "taken for {claimed}, but the content is {found}; read as {found}")
             }
             Self::VerticesWelded { before, after } => {
                 write!(
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn notes_are_sentences() {
         let note = Note::ExtensionContradicted { claimed: Format::Off, found: Format::Obj };
-        assert_eq!(note.to_string(), "the name says OFF, but the content is OBJ; read as OBJ");
+        assert_eq!(note.to_string(), "taken for OFF, but the content is OBJ; read as OBJ");
         let note = Note::VerticesWelded { before: 576, after: 96 };
         assert_eq!(note.to_string(), "576 facet corners welded by exact position into 96 vertices");
         let note =

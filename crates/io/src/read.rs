@@ -19,10 +19,18 @@ use crate::{Format, Note, PolygonMesh, ReadError, obj, off, ply, stl};
 /// # Errors
 /// [`ReadError`] if the file cannot be read or is not a mesh.
 pub fn read_mesh(path: &Path) -> Result<PolygonMesh, ReadError> {
+    read_mesh_as(path, None)
+}
+
+/// Reads a mesh file as one of a format, that of its name if none is given.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_as(path: &Path, format: Option<Format>) -> Result<PolygonMesh, ReadError> {
     let name = path.display().to_string();
     let bytes =
         fs::read(path).map_err(|error| Fault::whole_file(ReadErrorKind::Io(error)).named(&name))?;
-    parse_mesh(&bytes, Format::from_path(path), &name)
+    parse_mesh(&bytes, format.or_else(|| Format::from_path(path)), &name)
 }
 
 /// Reads a mesh from memory.

@@ -1,14 +1,20 @@
 //! Files: their errors as those of this crate.
 
 use crate::error::{Error, ErrorKind, Stage};
-use seamstress_io::{AtomicFile, PolygonMesh, ReadError, WriteError};
+use crate::options::MeshFormat;
+use seamstress_io::{AtomicFile, Format, PolygonMesh, ReadError, ReadErrorKind, WriteError};
 use std::io::{self, Write};
 use std::path::Path;
 
 impl From<ReadError> for Error {
     fn from(cause: ReadError) -> Self {
         // The message names the file and the place in it.
-        Self::new(ErrorKind::Unreadable, cause.to_string()).at_stage(Some(Stage::Files))
+        let error =
+            Self::new(ErrorKind::Unreadable, cause.to_string()).at_stage(Some(Stage::Files));
+        match cause.kind {
+            ReadErrorKind::UnknownFormat { .. } => error.with_hint("name the format with `format`"),
+            _ => error,
+        }
     }
 }
 
@@ -73,8 +79,20 @@ fn alternatives(words: impl Iterator<Item = String>) -> String {
     }
 }
 
-pub(crate) fn read_mesh(path: &Path) -> Result<PolygonMesh, Error> {
-    Ok(seamstress_io::read_mesh(path)?)
+impl From<MeshFormat> for Format {
+    fn from(format: MeshFormat) -> Self {
+        match format {
+            MeshFormat::Obj => Self::Obj,
+            MeshFormat::Off => Self::Off,
+            MeshFormat::Ply => Self::Ply,
+            MeshFormat::Stl => Self::Stl,
+        }
+    }
+}
+
+/// Reads a mesh as one of a format, that of its name if none is given.
+pub(crate) fn read_mesh(path: &Path, format: Option<MeshFormat>) -> Result<PolygonMesh, Error> {
+    Ok(seamstress_io::read_mesh_as(path, format.map(Format::from))?)
 }
 
 /// Writes a file of the format that its name says, which appears only when it is complete.

@@ -29,7 +29,7 @@ impl MapFile {
     /// triangle.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let mut mesh = read_mesh(path)?;
+        let mut mesh = read_mesh(path, None)?;
         let input = path.display().to_string();
         let bad = |text: &str| {
             Err(Error::new(ErrorKind::NotAMap, text).at_stage(Some(Stage::Files)).of(Some(&input)))

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Finding, Severity, listing};
+use crate::options::MeshFormat;
 use crate::polygons::Polygons;
 use crate::report::SurfaceReport;
 use crate::words::{counted, rounded};
@@ -39,6 +40,10 @@ pub struct SurfaceOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", num_args = 0..=1,
         default_value = "soups", default_missing_value = "auto"))]
     pub weld: Weld,
+
+    /// Format of the mesh, as of standard input, where neither name nor content says it [default: as they say]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT"))]
+    pub format: Option<MeshFormat>,
 }
 
 /// Which vertices are merged on reading.
@@ -88,6 +93,12 @@ impl SurfaceOptions {
         self.weld = weld;
         self
     }
+
+    /// Sets the format of the file.
+    pub fn format(mut self, format: MeshFormat) -> Self {
+        self.format = Some(format);
+        self
+    }
 }
 
 /// A mesh as it was given, triangulated, perhaps repaired, and checked.
@@ -132,11 +143,11 @@ impl Inspection {
     #[cfg(feature = "io")]
     pub fn read(path: impl AsRef<Path>, options: &SurfaceOptions) -> Result<Self, Error> {
         let path = path.as_ref();
-        Ok(Self::of_mesh(path, crate::files::read_mesh(path)?, options))
+        Ok(Self::of_mesh(path, crate::files::read_mesh(path, options.format)?, options))
     }
 
     /// Checks a mesh that is in memory as a file: OBJ, OFF, PLY or STL, as its content says. The name stands for it
-    /// in messages and reports, and its ending decides where the content is unclear.
+    /// in messages and reports, and the format of the options or its ending decides where the content is unclear.
     ///
     /// # Errors
     /// [`ErrorKind::Unreadable`].
@@ -147,7 +158,8 @@ impl Inspection {
         options: &SurfaceOptions,
     ) -> Result<Self, Error> {
         let name = name.as_ref();
-        let format = seamstress_io::Format::from_path(name);
+        let format = options.format.map(seamstress_io::Format::from);
+        let format = format.or_else(|| seamstress_io::Format::from_path(name));
         let read = seamstress_io::parse_mesh(content, format, &name.display().to_string())?;
         Ok(Self::of_mesh(name, read, options))
     }

@@ -54,6 +54,8 @@ pub struct IntegerMapReport {
     /// The features asked for and what became of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub features: Option<FeatureReport>,
+    /// Components of the surface, counted from 0, in which no cell fits whole, so that they will have no quads.
+    pub components_without_quads: Vec<u32>,
 }
 
 /// A grid asked for and the one made.
@@ -278,6 +280,7 @@ impl Surface {
             integer_certificate: solution.map.certificate().clone(),
             features: features.as_ref().map(|features| features.report.clone()),
             components: solution.components,
+            components_without_quads: self.components_without_cells(seamless.corner_uvs()),
         };
         SeamlessMap::reported(self, seamless.clone(), features, report)
     }

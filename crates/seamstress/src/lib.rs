@@ -103,10 +103,10 @@ pub use map::Described;
 pub use map::{MapReport, SeamlessMap};
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{
-    GridRounding, GridSize, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions,
+    GridRounding, GridSize, IntegerMapOptions, MapOptions, MeshFormat, QuadOptions, ShapeOptions,
 };
 #[cfg(feature = "render")]
-pub use pictures::{MapPictures, TextureOptions};
+pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};
 pub use quads::{
     ExtractedMap, ExtractionOptions, IrregularReport, QuadMesh, QuadMeshReport, QuadReport,
     QuadTopology, Untangled,

@@ -151,6 +151,19 @@ impl MapOptions {
     }
 }
 
+/// A format of mesh files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[allow(missing_docs)]
+pub enum MeshFormat {
+    Obj,
+    Off,
+    Ply,
+    Stl,
+}
+
 /// How fine a grid is to be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

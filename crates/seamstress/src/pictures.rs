@@ -10,12 +10,94 @@ use crate::words::rounded;
 use seamstress_mesh::soup;
 use seamstress_parametrize as method;
 use seamstress_render::{
-    HeatMap, Image, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, View, render_layout,
-    render_surface,
+    HeatMap, Image, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, Up, View,
+    render_layout, render_surface,
 };
 use serde::{Deserialize, Serialize};
 
-/// How pictures lay their texture over a map.
+/// From where pictures show a surface.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[cfg_attr(feature = "clap", command(next_help_heading = "View of the pictures"))]
+#[non_exhaustive]
+pub struct ViewOptions {
+    /// Show the surface from this side, and where there are two pictures of it, in the second from the opposite side
+    /// [default: from the front and a little from the right and from above]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "SIDE", requires = "drawn"))]
+    pub view: Option<ViewSide>,
+
+    /// The axis that points up in pictures
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "AXIS", requires = "drawn",
+        default_value_t = UpAxis::Y))]
+    pub up: UpAxis,
+}
+
+/// A side of a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum ViewSide {
+    /// Where `z` points to; where `z` is up, against `y`
+    Front,
+    /// Opposite to the front
+    Back,
+    /// To the left of who looks from the front
+    Left,
+    /// To the right of who looks from the front
+    Right,
+    /// From above
+    Top,
+    /// From below
+    Bottom,
+    /// From the front, the right and above at once, by the same angle
+    Iso,
+}
+
+/// An axis of the coordinates.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[allow(missing_docs)]
+pub enum UpAxis {
+    X,
+    #[default]
+    Y,
+    Z,
+}
+
+impl ViewOptions {
+    /// The view, and the one from the opposite side.
+    fn sides(&self) -> [View; 2] {
+        let Some(side) = self.view else { return [View::Front, View::Back] };
+        let towards: [f64; 3] = match side {
+            ViewSide::Front => [0.0, 0.0, 1.0],
+            ViewSide::Back => [0.0, 0.0, -1.0],
+            ViewSide::Left => [-1.0, 0.0, 0.0],
+            ViewSide::Right => [1.0, 0.0, 0.0],
+            ViewSide::Top => [0.0, 1.0, 0.0],
+            ViewSide::Bottom => [0.0, -1.0, 0.0],
+            ViewSide::Iso => [1.0; 3],
+        };
+        [View::Direction(towards), View::Direction(towards.map(|x| -x))]
+    }
+
+    /// Draws a scene from one of the sides.
+    fn draw(&self, scene: &Scene, view: View, paint: Paint) -> Result<Image, RenderError> {
+        let up = match self.up {
+            UpAxis::X => Up::X,
+            UpAxis::Y => Up::Y,
+            UpAxis::Z => Up::Z,
+        };
+        render_surface(scene, &SurfaceOptions { up, view, paint, ..SurfaceOptions::default() })
+    }
+}
+
+/// How pictures lay their texture over a map, and from where they show it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -37,6 +119,10 @@ pub struct TextureOptions {
     #[cfg_attr(feature = "clap", arg(long = "texture-period", value_name = "X", requires = "pictures",
         value_parser = parse::positive))]
     pub period: Option<f64>,
+
+    /// From where the surface is seen
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub view: ViewOptions,
 }
 
 impl TextureOptions {
@@ -77,9 +163,9 @@ pub(crate) mod parse {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MapPictures {
-    /// The surface from the front, with a checkerboard, cones, seams and features.
+    /// The surface from the front, or the side that is asked for, with a checkerboard, cones, seams and features.
     pub front: Vec<u8>,
-    /// The same from the back.
+    /// The same from the opposite side.
     pub back: Vec<u8>,
     /// The map in the plane.
     pub layout: Vec<u8>,
@@ -101,12 +187,12 @@ impl QuadMesh {
     ///
     /// # Errors
     /// [`ErrorKind::NoPicture`].
-    pub fn picture(&self) -> Result<Vec<u8>, Error> {
+    pub fn picture(&self, view: &ViewOptions) -> Result<Vec<u8>, Error> {
         let irregular: Vec<(u32, i32)> =
             self.irregular().iter().map(|v| (v.vertex, v.index)).collect();
         let polygons = || self.quads().iter().map(<[u32; 4]>::as_slice);
         let net = Net::new(self.positions(), polygons());
-        let image = net.draw(&irregular, Paint::plain(), View::Front);
+        let image = net.draw(&irregular, Paint::plain(), view, view.sides()[0]);
         image.and_then(|image| png(&image)).map_err(no_picture)
     }
 }
@@ -116,7 +202,11 @@ impl Surface {
     ///
     /// # Errors
     /// [`ErrorKind::NoPicture`].
-    pub fn picture(&self, features: Option<&FeatureCurves>) -> Result<Vec<u8>, Error> {
+    pub fn picture(
+        &self,
+        features: Option<&FeatureCurves>,
+        view: &ViewOptions,
+    ) -> Result<Vec<u8>, Error> {
         let scene = Scene {
             positions: self.positions(),
             faces: self.faces(),
@@ -125,29 +215,28 @@ impl Surface {
             open_ends: features.map_or(&[], FeatureCurves::open_ends),
             ..Scene::default()
         };
-        let options = SurfaceOptions { paint: Paint::plain(), ..SurfaceOptions::default() };
-        render_surface(&scene, &options).and_then(|image| png(&image)).map_err(no_picture)
+        let image = view.draw(&scene, view.sides()[0], Paint::plain());
+        image.and_then(|image| png(&image)).map_err(no_picture)
     }
 
     /// Draws the surface from both sides in the colours of a measure, with a legend, as a PNG file.
     ///
     /// # Errors
     /// [`ErrorKind::NoPicture`].
-    pub fn heat_picture(&self, measured: &Measurement) -> Result<Vec<u8>, Error> {
-        self.heat_image(measured).and_then(|image| png(&image)).map_err(no_picture)
+    pub fn heat_picture(
+        &self,
+        measured: &Measurement,
+        view: &ViewOptions,
+    ) -> Result<Vec<u8>, Error> {
+        self.heat_image(measured, view).and_then(|image| png(&image)).map_err(no_picture)
     }
 
-    fn heat_image(&self, measured: &Measurement) -> Result<Image, RenderError> {
+    fn heat_image(&self, measured: &Measurement, view: &ViewOptions) -> Result<Image, RenderError> {
         let scene = Scene { positions: self.positions(), faces: self.faces(), ..Scene::default() };
         let heat = measured.heat();
-        let options = |view| SurfaceOptions {
-            view,
-            paint: heat.paint(&measured.values),
-            ..SurfaceOptions::default()
-        };
-        let front = render_surface(&scene, &options(View::Front))?;
-        let back = render_surface(&scene, &options(View::Back))?;
-        heat.with_legend(&front.beside(&back)?, &measured.values)
+        let [front, back] =
+            view.sides().map(|side| view.draw(&scene, side, heat.paint(&measured.values)));
+        heat.with_legend(&front?.beside(&back?)?, &measured.values)
     }
 }
 
@@ -204,17 +293,12 @@ fn draw_map(
         released: &dropped,
         ..Scene::default()
     };
-    let side = |view| {
-        let paint = Paint::checker(texture.period);
-        let options = SurfaceOptions { view, paint, ..SurfaceOptions::default() };
-        render_surface(&scene, &options).and_then(|image| png(&image)).map_err(no_picture)
-    };
+    let [front, back] = texture.view.sides().map(|side| {
+        let image = texture.view.draw(&scene, side, Paint::checker(texture.period));
+        image.and_then(|image| png(&image)).map_err(no_picture)
+    });
     let layout = render_layout(&scene, &LayoutOptions::default()).and_then(|image| png(&image));
-    Ok(MapPictures {
-        front: side(View::Front)?,
-        back: side(View::Back)?,
-        layout: layout.map_err(no_picture)?,
-    })
+    Ok(MapPictures { front: front?, back: back?, layout: layout.map_err(no_picture)? })
 }
 
 /// Draws polygons from both sides in colours, one value each, with edges, irregular vertices and a legend, as a PNG
@@ -224,13 +308,15 @@ pub(crate) fn draw_polygons<'a>(
     polygons: impl Iterator<Item = &'a [u32]> + Clone,
     irregular: &[(u32, i32)],
     (heat, values): (&HeatMap, &[f64]),
+    view: &ViewOptions,
 ) -> Result<Vec<u8>, Error> {
     let net = Net::new(positions, polygons);
     let of_faces: Vec<f64> =
         net.polygon_of_face.iter().filter_map(|&p| values.get(p as usize)).copied().collect();
-    let side = |view| net.draw(irregular, heat.paint(&of_faces), view);
     let draw = || {
-        let both = side(View::Front)?.beside(&side(View::Back)?)?;
+        let [front, back] =
+            view.sides().map(|side| net.draw(irregular, heat.paint(&of_faces), view, side));
+        let both = front?.beside(&back?)?;
         png(&heat.with_legend(&both, &of_faces)?)
     };
     draw().map_err(no_picture)
@@ -268,7 +354,8 @@ impl<'a> Net<'a> {
         &self,
         irregular: &[(u32, i32)],
         paint: Paint,
-        view: View,
+        view: &ViewOptions,
+        side: View,
     ) -> Result<Image, RenderError> {
         let scene = Scene {
             positions: self.positions,
@@ -277,7 +364,7 @@ impl<'a> Net<'a> {
             seams: &self.edges,
             ..Scene::default()
         };
-        render_surface(&scene, &SurfaceOptions { view, paint, ..SurfaceOptions::default() })
+        view.draw(&scene, side, paint)
     }
 }
 
@@ -295,10 +382,61 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_and_a_shift() {
-        let texture = TextureOptions { angle: 90.0, shift: [1.0, -2.0], period: None };
+        let texture = TextureOptions { angle: 90.0, shift: [1.0, -2.0], ..Default::default() };
         let [u, v] = texture.apply([3.0, 5.0]);
         assert!((u + 4.0).abs() < 1e-12 && (v - 1.0).abs() < 1e-12);
         assert_eq!(TextureOptions::default().apply([0.1, 0.7]), [0.1, 0.7]);
+    }
+
+    /// A box as long as its sides along `x`, `y` and `z`.
+    fn block(sides: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        let corner = |v: u32| std::array::from_fn(|k| sides[k] * f64::from((v >> k) & 1));
+        let quads =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        ((0..8).map(corner).collect(), faces)
+    }
+
+    #[test]
+    fn sides_and_the_axis_that_is_up_show_as_they_are_named() {
+        let (positions, faces) = block([4.0, 2.0, 1.0]);
+        let scene = Scene { positions: &positions, faces: &faces, ..Scene::default() };
+        // Width over height of what is not background.
+        let shape = |side, up| {
+            let view = ViewOptions { view: Some(side), up };
+            let image = view.draw(&scene, view.sides()[0], Paint::plain()).unwrap();
+            let drawn = |x: &u32, y: &u32| image.pixel(*x, *y) != [255; 3];
+            let across = (0..image.width()).filter(|x| drawn(x, &(image.height() / 2))).count();
+            let down = (0..image.height()).filter(|y| drawn(&(image.width() / 2), y)).count();
+            across as f64 / down as f64
+        };
+        let cases = [
+            (ViewSide::Front, UpAxis::Y, 4.0 / 2.0),
+            (ViewSide::Back, UpAxis::Y, 4.0 / 2.0),
+            (ViewSide::Left, UpAxis::Y, 1.0 / 2.0),
+            (ViewSide::Right, UpAxis::Y, 1.0 / 2.0),
+            (ViewSide::Top, UpAxis::Y, 4.0 / 1.0),
+            (ViewSide::Bottom, UpAxis::Z, 4.0 / 2.0),
+            (ViewSide::Front, UpAxis::Z, 4.0 / 1.0),
+            (ViewSide::Left, UpAxis::Z, 2.0 / 1.0),
+            (ViewSide::Front, UpAxis::X, 2.0 / 4.0),
+        ];
+        for (side, up, expected) in cases {
+            let found = shape(side, up);
+            assert!((found / expected - 1.0).abs() < 0.02, "{side:?} {up:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn an_axis_that_is_up_draws_the_mesh_that_is_turned() {
+        let (positions, faces) = block([4.0, 2.0, 1.0]);
+        let turned: Vec<[f64; 3]> = positions.iter().map(|&[x, y, z]| [x, z, -y]).collect();
+        let picture = |positions: &[[f64; 3]], up| {
+            let view = ViewOptions { view: None, up };
+            Surface::from_triangles(positions, &faces).unwrap().picture(None, &view).unwrap()
+        };
+        assert!(picture(&positions, UpAxis::Z) == picture(&turned, UpAxis::Y));
+        assert!(picture(&positions, UpAxis::Z) != picture(&positions, UpAxis::Y));
     }
 
     #[cfg(feature = "clap")]

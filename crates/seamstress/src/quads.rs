@@ -394,6 +394,20 @@ impl Surface {
         made.map_err(|error| error.of(self.input()))
     }
 
+    /// The components in which no cell of an integer-grid map fits whole; only a boundary cuts cells.
+    pub(crate) fn components_without_cells(&self, corner_uvs: &[[f64; 2]]) -> Vec<u32> {
+        if self.report().boundary_loops == 0 {
+            return Vec::new();
+        }
+        let settings = ExtractOptions::default();
+        match quads::extract(self.mesh(), self.positions(), corner_uvs, &settings) {
+            Ok(extraction) => self.components_without(&extraction.sources),
+            Err(ExtractError::NoQuads { .. }) => self.components_without(&[]),
+            // Too many cells for extraction: nothing is known of them.
+            Err(_) => Vec::new(),
+        }
+    }
+
     /// The components that none of some points lies on.
     fn components_without(&self, points: &[SurfacePoint]) -> Vec<u32> {
         // Each of them has been a mesh as part of the whole.

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 #[cfg(feature = "render")]
-use crate::pictures::draw_polygons;
+use crate::pictures::{ViewOptions, draw_polygons};
 use crate::polygons::Polygons;
 use crate::report::{Distortion, Measurement, VERSION};
 use seamstress_parametrize::quality::Measure;
@@ -82,7 +82,7 @@ impl PolygonMesh {
     #[cfg(feature = "io")]
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let read = crate::files::read_mesh(path)?;
+        let read = crate::files::read_mesh(path, None)?;
         let input = Some(path.display().to_string());
         Self::checked(Self {
             input,
@@ -184,7 +184,12 @@ impl PolygonMesh {
     /// # Errors
     /// [`ErrorKind::NoPicture`], and [`ErrorKind::NotQuads`] where the metric is not defined.
     #[cfg(feature = "render")]
-    pub fn picture(&self, quality: &QualityReport, of: QuadMetric) -> Result<Vec<u8>, Error> {
+    pub fn picture(
+        &self,
+        quality: &QualityReport,
+        of: QuadMetric,
+        view: &ViewOptions,
+    ) -> Result<Vec<u8>, Error> {
         let (values, heat) = match of {
             QuadMetric::Angle => self.angle_heat(),
             QuadMetric::Measure(wanted) => {
@@ -201,7 +206,8 @@ impl PolygonMesh {
         let vertices = quality.topology.irregular_vertices.iter();
         let irregular: Vec<(u32, i32)> =
             vertices.map(|&(v, edges)| (v, 4 - edges as i32)).collect();
-        draw_polygons(&self.positions, self.polygons.iter(), &irregular, (&heat, values.as_slice()))
+        let polygons = self.polygons.iter();
+        draw_polygons(&self.positions, polygons, &irregular, (&heat, values.as_slice()), view)
     }
 
     #[cfg(feature = "render")]

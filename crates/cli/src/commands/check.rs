@@ -9,7 +9,7 @@ use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::{
     CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Severity,
-    Surface, SurfaceOptions, Verdict, listing,
+    Surface, SurfaceOptions, Verdict, ViewOptions, listing,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -75,12 +75,15 @@ pub(crate) struct CheckArgs {
     alignment_tolerance: Option<f64>,
 
     /// Draw the mesh with its features to this PNG file
-    #[arg(long, value_name = "FILE.png", conflicts_with = "map")]
+    #[arg(long, value_name = "FILE.png", conflicts_with = "map", group = "drawn")]
     picture: Option<PathBuf>,
 
     /// Print everything as JSON on standard output, with all faults
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 /// What was found.
@@ -228,8 +231,9 @@ impl Command for CheckArgs {
     }
 
     fn pictures(&self, checked: &Checked) -> Result<Vec<Vec<u8>>, Error> {
-        let draw =
-            |(surface, curves): &(Surface, Option<FeatureCurves>)| surface.picture(curves.as_ref());
+        let draw = |(surface, curves): &(Surface, Option<FeatureCurves>)| {
+            surface.picture(curves.as_ref(), &self.view)
+        };
         checked.surface.iter().filter(|_| self.picture.is_some()).map(draw).collect()
     }
 

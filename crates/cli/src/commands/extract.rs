@@ -6,7 +6,9 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
-use seamstress::{Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh};
+use seamstress::{
+    Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh, ViewOptions,
+};
 use serde_json::Value;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -54,11 +56,14 @@ pub(crate) struct ExtractArgs {
     report: Option<PathBuf>,
 
     /// Write a picture of the quad mesh with its irregular vertices to this PNG file
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
     picture: Option<PathBuf>,
 
     #[command(flatten)]
     run: RunArgs,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 impl Command for ExtractArgs {
@@ -93,7 +98,7 @@ impl Command for ExtractArgs {
     }
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| quads.picture()).collect()
+        self.picture.iter().map(|_| quads.picture(&self.view)).collect()
     }
 
     fn write(

@@ -6,7 +6,7 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan};
 use crate::summary;
-use seamstress::{Error, FeatureCurves, Features, Surface, SurfaceOptions};
+use seamstress::{Error, FeatureCurves, Features, Surface, SurfaceOptions, ViewOptions};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ pub(crate) struct FeaturesArgs {
     features: FeatureArgs,
 
     /// Draw the mesh with its features to this PNG file
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
     picture: Option<PathBuf>,
 
     #[command(flatten)]
@@ -39,6 +39,9 @@ pub(crate) struct FeaturesArgs {
     /// Print everything as JSON on standard output
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 impl Command for FeaturesArgs {
@@ -66,7 +69,7 @@ impl Command for FeaturesArgs {
     }
 
     fn pictures(&self, (surface, curves): &Self::Product) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| surface.picture(Some(curves))).collect()
+        self.picture.iter().map(|_| surface.picture(Some(curves), &self.view)).collect()
     }
 
     fn report(&self, (surface, curves): &Self::Product) -> Value {

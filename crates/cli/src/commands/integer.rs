@@ -56,7 +56,7 @@ pub(crate) struct IntegerArgs {
     report: Option<PathBuf>,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "drawn")]
     pictures: Option<PathBuf>,
 
     #[command(flatten)]
@@ -110,14 +110,21 @@ impl Command for IntegerArgs {
     fn make(&self, session: &Session) -> Result<IntegerGridMap, Failure> {
         let surface = session.open(&self.mesh, &self.surface)?;
         let options = self.options();
-        let Some(path) = &self.map else {
-            return Ok(surface.integer_map(&options)?);
+        let integer = match &self.map {
+            None => surface.integer_map(&options)?,
+            Some(path) => {
+                let map = MapFile::read(path)?;
+                map.require_mesh_of(&surface)?;
+                let default = CertifyOptions::default();
+                let tolerance = self.tolerance.unwrap_or(default.tolerance);
+                let certify = default.tolerance(tolerance);
+                surface.integer_map_of(map.uvs(), map.face_uvs(), &certify, &options)?
+            }
         };
-        let map = MapFile::read(path)?;
-        map.require_mesh_of(&surface)?;
-        let default = CertifyOptions::default();
-        let certify = default.clone().tolerance(self.tolerance.unwrap_or(default.tolerance));
-        Ok(surface.integer_map_of(map.uvs(), map.face_uvs(), &certify, &options)?)
+        let report = integer.report();
+        let lost = summary::lost_warning(&report.input, &report.components_without_quads);
+        lost.iter().for_each(|line| session.report(line));
+        Ok(integer)
     }
 
     fn pictures(&self, map: &IntegerGridMap) -> Result<Vec<Vec<u8>>, Error> {

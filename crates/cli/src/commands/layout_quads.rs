@@ -38,7 +38,7 @@ pub(crate) struct LayoutQuadsArgs {
     method: QuadLayoutMethod,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "drawn")]
     pictures: Option<PathBuf>,
 
     /// Print the report as JSON on standard output instead of the summary

@@ -48,7 +48,7 @@ pub(crate) struct MapArgs {
     report: Option<PathBuf>,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "drawn")]
     pictures: Option<PathBuf>,
 
     /// Write the cones to this file: vertex (counted from 0) and index in quarters of a turn

@@ -10,6 +10,7 @@ use crate::text::{counted, row};
 use clap::builder::PossibleValuesParser;
 use seamstress::{
     CertifyOptions, Error, MapFile, Measure, Measurements, Objective, Surface, SurfaceOptions,
+    ViewOptions,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -36,7 +37,7 @@ pub(crate) struct MeasureArgs {
     map: PathBuf,
 
     /// Paint a measure on the surface, from both sides, and write the picture to this file
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
     picture: Option<PathBuf>,
 
     /// The measure that is painted
@@ -55,6 +56,9 @@ pub(crate) struct MeasureArgs {
     /// Print everything as JSON on standard output
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 impl MeasureArgs {
@@ -92,7 +96,10 @@ impl Command for MeasureArgs {
     fn pictures(&self, (surface, measured): &Self::Product) -> Result<Vec<Vec<u8>>, Error> {
         let wanted = measure_named(&self.of);
         let painted = measured.measures.iter().filter(|m| m.measure == wanted);
-        painted.filter(|_| self.picture.is_some()).map(|m| surface.heat_picture(m)).collect()
+        painted
+            .filter(|_| self.picture.is_some())
+            .map(|m| surface.heat_picture(m, &self.view))
+            .collect()
     }
 
     fn report(&self, (surface, measured): &Self::Product) -> Value {

@@ -61,7 +61,7 @@ pub(crate) struct OptimizeArgs {
     report: Option<PathBuf>,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "drawn")]
     pictures: Option<PathBuf>,
 
     #[command(flatten)]

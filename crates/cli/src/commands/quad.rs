@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::row;
 use seamstress::{
-    Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
+    Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions, ViewOptions,
 };
 use serde_json::Value;
 use std::io;
@@ -51,7 +51,7 @@ pub(crate) struct QuadArgs {
     report: Option<PathBuf>,
 
     /// Write a picture of the quad mesh with its irregular vertices to this PNG file
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
     picture: Option<PathBuf>,
 
     #[command(flatten)]
@@ -65,6 +65,9 @@ pub(crate) struct QuadArgs {
 
     #[command(flatten)]
     run: RunArgs,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 impl QuadArgs {
@@ -103,7 +106,7 @@ impl Command for QuadArgs {
     }
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| quads.picture()).collect()
+        self.picture.iter().map(|_| quads.picture(&self.view)).collect()
     }
 
     fn write(

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan};
 use crate::summary;
 use clap::builder::PossibleValuesParser;
 use seamstress::{
-    Error, Inspection, Measure, PolygonMesh, QuadMetric, QualityReport, SurfaceOptions,
+    Error, Inspection, Measure, PolygonMesh, QuadMetric, QualityReport, SurfaceOptions, ViewOptions,
 };
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub(crate) struct QualityArgs {
     source: Option<PathBuf>,
 
     /// Draw the mesh from both sides, with its irregular vertices, in the colours of a metric
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
     picture: Option<PathBuf>,
 
     /// The metric that is painted: the largest deviation of an angle, or a distortion of the layout
@@ -65,6 +65,9 @@ pub(crate) struct QualityArgs {
     /// Print the report as JSON on standard output instead of the table
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 impl QualityArgs {
@@ -102,7 +105,7 @@ impl Command for QualityArgs {
     }
 
     fn pictures(&self, (mesh, report): &Self::Product) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| mesh.picture(report, self.metric())).collect()
+        self.picture.iter().map(|_| mesh.picture(report, self.metric(), &self.view)).collect()
     }
 
     fn report(&self, (_, report): &Self::Product) -> Value {

@@ -1,6 +1,6 @@
 //! `seamstress quad`.
 
-use crate::harness::{Folder, lines_of, off};
+use crate::harness::{Folder, lines_of, obj, off};
 use seamstress_testkit as kit;
 use serde_json::Value;
 
@@ -70,6 +70,23 @@ fn standard_input_and_output_stand_for_files() {
     folder.write("nothing", "");
     let run = folder.fed("nothing", &["check", "-"]);
     assert_eq!((run.code, run.stderr.trim_end()), (Some(1), "error: -: the file is empty"));
+}
+
+#[test]
+fn a_format_that_the_content_does_not_tell_can_be_named() {
+    let folder = Folder::new();
+    // The first word is none of OBJ.
+    let torus = obj(&kit::torus(16, 10, 2.0, 0.8));
+    folder.write("torus", format!("maker 7\n{torus}"));
+    let run = folder.fed("torus", &["check", "-"]);
+    assert!(run.code == Some(1) && run.stderr.contains("`--format`"), "{run:?}");
+    let run = folder.fed("torus", &["check", "-", "--format", "obj"]);
+    assert!(run.code == Some(0) && run.stdout.contains("320 triangles"), "{run:?}");
+    folder.expect(0, &["check", "torus", "--format", "obj"]);
+    // What the content says plainly counts.
+    folder.write("torus.txt", torus);
+    let run = folder.expect(0, &["check", "torus.txt", "--format", "ply"]);
+    assert!(run.stdout.contains("taken for PLY, but the content is OBJ"), "{run:?}");
 }
 
 #[test]
@@ -206,4 +223,46 @@ fn badly_shaped_quads_are_mended_unless_the_map_is_wanted_as_it_is() {
         Some(0) => assert_eq!(folder.read("raw.obj"), folder.read("q.obj")),
         _ => assert!(range(&mended) < range(&raw), "{mended} {raw}"),
     }
+}
+
+#[test]
+fn what_is_merged_and_what_gets_no_quads_is_said_by_every_command() {
+    let folder = Folder::new();
+    // A cube whose faces share no vertices, and a triangle smaller than a cell.
+    let mut soup = kit::subdivide(&kit::subdivide(&kit::cube()));
+    let corners = soup.faces.concat();
+    soup.positions = corners.iter().map(|&v| soup.positions[v as usize]).collect();
+    soup.positions.extend([[9.0, 0.0, 0.0], [9.01, 0.0, 0.0], [9.0, 0.01, 0.0]]);
+    soup.faces =
+        (0..soup.positions.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+    folder.write_obj("parts.obj", &soup);
+    let said = |arguments: &[&str], words: &str| {
+        let output = ["--features", "none", "-o", "out.obj"];
+        let run = folder.expect(0, &[arguments, &output].concat());
+        let line = run.stderr.lines().find(|line| line.contains(words)).map(str::to_owned);
+        line.unwrap_or_else(|| panic!("{words} is not in {}", run.stderr))
+    };
+    let quad = ["quad", "parts.obj", "--quads", "100"];
+    let integer = ["integer", "parts.obj", "--quads", "100"];
+    let merged = said(&quad, "vertices in the place of another");
+    assert_eq!(said(&integer, "merged"), merged);
+    assert_eq!(said(&["map", "parts.obj"], "merged"), merged);
+    let lost = said(&quad, "have no quads");
+    assert!(lost.starts_with("warning: 1 of 2 components"), "{lost}");
+    assert_eq!(said(&integer, "have no quads"), lost);
+}
+
+#[test]
+fn views_need_a_picture_and_turn_it() {
+    let folder = Folder::new();
+    folder.write_obj("torus.obj", &kit::torus(16, 10, 2.0, 0.8));
+    folder.expect(2, &["features", "torus.obj", "--view", "top"]);
+    let picture = |view: &[&str]| {
+        let arguments = ["features", "torus.obj", "--picture", "torus.png"];
+        folder.expect(0, &[&arguments[..], view].concat());
+        std::fs::read(folder.path("torus.png")).unwrap()
+    };
+    let pictures =
+        [picture(&[]), picture(&["--view", "top"]), picture(&["--view", "top", "--up", "z"])];
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
 }

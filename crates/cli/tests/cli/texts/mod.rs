@@ -73,6 +73,21 @@ fn help() {
     }
 }
 
+#[test]
+fn manual_pages_keep_the_lines_of_tables() {
+    let folder = Folder::new();
+    folder.expect(0, &["man", "pages"]);
+    let page = folder.read("pages/seamstress-quad.1");
+    let table: Vec<&str> = page
+        .lines()
+        .skip_while(|line| !line.contains("the boundary, and creases"))
+        .take_while(|line| !line.is_empty())
+        .collect();
+    // A line that begins with a space is not filled with others.
+    assert_eq!(table.len(), 12);
+    assert!(table.iter().all(|line| line.starts_with("  ") && line.len() < 72), "{table:?}");
+}
+
 fn help_name(command: &str) -> String {
     format!("help-{}", command.replace(' ', "-"))
 }
