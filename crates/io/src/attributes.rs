@@ -1,6 +1,5 @@
 //! What a file says of its faces beside their corners.
 
-use crate::CornerUvs;
 use std::collections::BTreeMap;
 
 /// Something that faces on the two sides of an edge may have in common.
@@ -14,6 +13,15 @@ pub enum Attribute {
     Smoothing,
     /// Texture coordinates at the ends of the edge: `vt` of OBJ.
     Uvs,
+}
+
+/// Texture coordinates per polygon corner.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CornerUvs {
+    /// The distinct `vt` entries of the file.
+    pub coordinates: Vec<[f64; 2]>,
+    /// One index into `coordinates` per corner, in the order of [`Polygons::corners`](crate::Polygons::corners).
+    pub corners: Vec<u32>,
 }
 
 /// The attributes of all faces, of those formats that have them.

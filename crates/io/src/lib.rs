@@ -55,14 +55,14 @@ mod write;
 mod write_polygons;
 
 pub use atomic::{AtomicFile, WriteError};
-pub use attributes::{Attribute, FaceAttributes};
+pub use attributes::{Attribute, CornerUvs, FaceAttributes};
 pub use cones::{Cones, parse_cones, read_cones, write_singularities};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
 pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};
 pub use field::{Directions, parse_rawfield, parse_rosy, read_field, write_rawfield, write_rosy};
 pub use format::{Format, is_compressed};
 pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
-pub use mesh::{CornerUvs, PolygonMesh, Polygons};
+pub use mesh::{PolygonMesh, Polygons};
 pub use note::Note;
 pub use read::{parse_mesh, read_mesh, read_mesh_as};
 pub use write::{MapObj, write_map_obj};

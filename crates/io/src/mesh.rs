@@ -1,6 +1,7 @@
 //! The neutral polygon mesh that every reader fills.
 
-use crate::{FaceAttributes, Format, Note};
+use crate::attributes::{CornerUvs, FaceAttributes};
+use crate::{Format, Note};
 
 /// A mesh as a file states it: nothing is repaired, triangulated or reordered.
 ///
@@ -44,15 +45,6 @@ impl PolygonMesh {
     pub fn take_attributes(&mut self) -> FaceAttributes {
         FaceAttributes { uvs: self.corner_uvs.take(), ..std::mem::take(&mut self.attributes) }
     }
-}
-
-/// Texture coordinates per polygon corner.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CornerUvs {
-    /// The distinct `vt` entries of the file.
-    pub coordinates: Vec<[f64; 2]>,
-    /// One index into `coordinates` per corner, in the order of [`Polygons::corners`].
-    pub corners: Vec<u32>,
 }
 
 /// A list of polygons, stored flat.

@@ -12,6 +12,7 @@ pub mod quality;
 pub mod smooth;
 mod split;
 mod surface;
+mod surface_point;
 mod untangle;
 mod vector;
 

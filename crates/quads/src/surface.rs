@@ -1,6 +1,6 @@
 //! A triangulated surface to project to.
 
-use crate::extract::SurfacePoint;
+use crate::surface_point::SurfacePoint;
 use crate::vector::{Point, add, angle, cross, scale, sub, unit, vector};
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{TriMesh as Bvh, Triangle, TrianglePointLocation};

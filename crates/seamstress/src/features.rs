@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::Elements;
-use crate::options::GridSize;
+use crate::grid_size::GridSize;
 use crate::surface::Surface;
 #[cfg(feature = "io")]
 use seamstress_io::Attribute;

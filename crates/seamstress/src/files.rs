@@ -1,7 +1,7 @@
 //! Files: their errors as those of this crate.
 
 use crate::error::{Error, ErrorKind, Stage};
-use crate::options::MeshFormat;
+use crate::mesh_format::MeshFormat;
 use seamstress_io::{AtomicFile, Format, PolygonMesh, ReadError, ReadErrorKind, WriteError};
 use std::io::{self, Write};
 use std::path::Path;
@@ -76,17 +76,6 @@ fn alternatives(words: impl Iterator<Item = String>) -> String {
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
         None => String::new(),
-    }
-}
-
-impl From<MeshFormat> for Format {
-    fn from(format: MeshFormat) -> Self {
-        match format {
-            MeshFormat::Obj => Self::Obj,
-            MeshFormat::Off => Self::Off,
-            MeshFormat::Ply => Self::Ply,
-            MeshFormat::Stl => Self::Stl,
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Finding, Severity, listing};
-use crate::options::MeshFormat;
+use crate::mesh_format::MeshFormat;
 use crate::polygons::Polygons;
 use crate::report::SurfaceReport;
 use crate::words::{counted, rounded};

@@ -58,11 +58,13 @@ mod files;
 mod finding;
 #[cfg(feature = "io")]
 mod given;
+mod grid_size;
 mod inspection;
 mod integer;
 #[cfg(feature = "lab")]
 pub mod lab;
 mod map;
+mod mesh_format;
 mod optimize;
 mod options;
 #[cfg(feature = "render")]
@@ -96,15 +98,15 @@ pub use finding::listing;
 pub use finding::{Elements, Finding, Severity};
 #[cfg(feature = "io")]
 pub use given::MapFile;
+pub use grid_size::GridSize;
 pub use inspection::{Inspection, SurfaceOptions, Weld};
 pub use integer::{GridReport, IntegerGridMap, IntegerMapReport};
 #[doc(hidden)]
 pub use map::Described;
 pub use map::{MapReport, SeamlessMap};
+pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
-pub use options::{
-    GridRounding, GridSize, IntegerMapOptions, MapOptions, MeshFormat, QuadOptions, ShapeOptions,
-};
+pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
 #[cfg(feature = "render")]
 pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};
 pub use quads::{

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::features::{FeatureSource, Features};
+use crate::grid_size::GridSize;
 use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
 use seamstress_quantize as quantize;
@@ -148,80 +149,6 @@ impl MapOptions {
         });
         options.objective = self.objective;
         options
-    }
-}
-
-/// A format of mesh files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[allow(missing_docs)]
-pub enum MeshFormat {
-    Obj,
-    Off,
-    Ply,
-    Stl,
-}
-
-/// How fine a grid is to be.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum GridSize {
-    /// About so many quads in all.
-    Quads(f64),
-    /// Mean edge length of the quads, mesh units.
-    EdgeLength(f64),
-    /// Grid units per mesh unit.
-    Scale(f64),
-}
-
-impl Default for GridSize {
-    fn default() -> Self {
-        Self::Quads(5000.0)
-    }
-}
-
-/// The most quads of a mesh: each takes about a kilobyte while it is made.
-const MOST_QUADS: f64 = 1e8;
-
-impl GridSize {
-    fn validate(self) -> Result<(), Error> {
-        let (name, value) = match self {
-            Self::Quads(x) => ("quads", x),
-            Self::EdgeLength(x) => ("edge_length", x),
-            Self::Scale(x) => ("scale", x),
-        };
-        match value.is_finite() && value > 0.0 {
-            true => Ok(()),
-            false => Err(Error::options(format!("{name}: {value} is no number larger than 0"))),
-        }
-    }
-
-    /// Refuses a grid of more quads than fit into memory, on a surface with the area of a square of this side.
-    pub(crate) fn check_count(self, side: f64) -> Result<(), Error> {
-        let (name, value, count) = match self {
-            Self::Quads(x) => ("quads", x, x),
-            Self::EdgeLength(x) => ("edge_length", x, (side / x).powi(2)),
-            Self::Scale(x) => ("scale", x, (side * x).powi(2)),
-        };
-        match count <= MOST_QUADS {
-            true => Ok(()),
-            false => Err(Error::options(format!(
-                "{name}: {value} asks for about {count:.1e} quads, more than fit into memory; \
-                 at most {MOST_QUADS:.0e} are made"
-            ))),
-        }
-    }
-
-    pub(crate) fn to_quantize(self) -> quantize::GridSize {
-        match self {
-            Self::Quads(x) => quantize::GridSize::Quads(x),
-            Self::EdgeLength(x) => quantize::GridSize::EdgeLength(x),
-            Self::Scale(x) => quantize::GridSize::Scale(x),
-        }
     }
 }
 

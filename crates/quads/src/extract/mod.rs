@@ -17,8 +17,8 @@ mod snap;
 mod sweep;
 mod winding;
 
+pub use crate::surface_point::SurfacePoint;
 pub use error::{ExtractError, MapFault, MapFaults};
-pub use points::SurfacePoint;
 pub use snap::Snapping;
 
 use crate::QuadMesh;

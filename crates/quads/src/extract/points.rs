@@ -3,6 +3,7 @@
 use super::fixed::Point;
 use super::snap::GridMap;
 use super::sweep::{points_between, points_inside};
+use crate::surface_point::SurfacePoint;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, TriMesh, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 
@@ -17,24 +18,6 @@ pub(super) enum Site {
     Edge(Halfedge, [i64; 2]),
     /// Strictly inside a face.
     Face(Face, [i64; 2]),
-}
-
-/// A point of the surface.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct SurfacePoint {
-    /// The face it lies on.
-    pub face: u32,
-    /// Weights of the face's vertices; they sum to 1.
-    pub barycentric: [f64; 3],
-}
-
-impl SurfacePoint {
-    /// Where it is in space.
-    pub fn position(&self, positions: &[[f64; 3]], faces: &[[u32; 3]]) -> [f64; 3] {
-        let corners = faces[self.face as usize].map(|v| positions[v as usize]);
-        [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
-    }
 }
 
 /// All grid points: those at vertices first, then on edges, then in faces.
