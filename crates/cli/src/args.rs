@@ -63,7 +63,7 @@ pub(crate) struct FeatureArgs {
     ///   uv-seams       where the `vt` differ on both sides
     ///   edges:A-B,...  edges by their vertices, counted from 0
     ///   pairs:FILE     two vertices a line, from 0; # starts a comment
-    ///   sharp:FILE     of QuadWild: count, then `type,face,side` a line
+    ///   sharp:FILE     of QuadWild: count, then `type,face,side`
     ///
     /// Vertices and faces are those of the file, also with `--repair`.
     /// The default is `auto` for quads and integer-grid maps of a mesh.
