@@ -11,6 +11,7 @@
 
 pub mod components;
 pub mod features;
+mod flat;
 pub mod ids;
 mod mesh;
 mod metric;

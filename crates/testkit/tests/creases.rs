@@ -5,10 +5,11 @@ use seamstress_mesh::features::{EdgeSet, creases, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_testkit::{
-    bumpy, cube, cylinder, graph, icosphere, l_bracket, octahedron, relabel, scale, subdivide,
-    torus, uv_sphere, voxel_surface,
+    bumpy, cube, cylinder, extruded, graph, icosphere, l_bracket, octahedron, pyramid, relabel,
+    scale, subdivide, tetrahedron, torus, uv_sphere, voxel_surface,
 };
 use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
 
 fn mesh(soup: &TriangleSoup) -> (TriMesh, Metric) {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
@@ -45,8 +46,8 @@ fn drum(n: u32, m: u32) -> TriangleSoup {
 }
 
 #[test]
-fn a_prism_of_up_to_eight_sides_has_all_its_edges() {
-    for n in 3..=8 {
+fn a_prism_of_up_to_nine_sides_has_all_its_edges() {
+    for n in 3..=9 {
         for m in [1, 4] {
             assert_eq!(count(&drum(n, m)), (n * m + 2 * n) as usize, "{n} sides, {m} rows");
         }
@@ -55,7 +56,7 @@ fn a_prism_of_up_to_eight_sides_has_all_its_edges() {
 
 #[test]
 fn a_cylinder_keeps_its_rims_alone() {
-    for n in [9, 12, 16, 24, 32, 64] {
+    for n in [10, 12, 16, 24, 32, 64] {
         for m in [1, 4] {
             assert_eq!(count(&drum(n, m)), 2 * n as usize, "{n} sides, {m} rows");
         }
@@ -65,16 +66,35 @@ fn a_cylinder_keeps_its_rims_alone() {
 
 #[test]
 fn round_shapes_have_none() {
-    for n in 0..5 {
+    for n in 1..5 {
         assert_eq!(count(&icosphere(n)), 0, "icosphere {n}");
     }
-    for n in [8, 10, 16, 32] {
+    for n in [10, 16, 32] {
         assert_eq!(count(&uv_sphere(n, n / 2)), 0, "sphere of {n} slices");
     }
-    assert_eq!(count(&octahedron()), 0);
     for n in [9, 16, 40] {
         assert_eq!(count(&torus(2 * n, n, 3.0, 1.0)), 0, "torus {n}");
     }
+}
+
+#[test]
+fn polyhedra_have_all_their_sharp_edges() {
+    assert_eq!(count(&tetrahedron()), 6);
+    assert_eq!(count(&octahedron()), 12);
+    assert_eq!(count(&icosphere(0)), 30);
+    for n in 3..33u32 {
+        // The base, and the sides where they meet at 40 degrees or more.
+        let side = {
+            let (angle, slope) = (TAU / f64::from(n), 1.5f64 / (PI / f64::from(n)).cos());
+            let normal_z = 1.0 / (1.0 + slope * slope).sqrt();
+            let across = 1.0 - normal_z * normal_z;
+            (across * angle.cos() + normal_z * normal_z).acos()
+        };
+        let expected = if side.to_degrees() > 40.0 { 2 * n } else { n };
+        assert_eq!(count(&pyramid(n, 1.5)), expected as usize, "{n} sides");
+    }
+    let wedge = extruded(&[[0.0, 0.0], [1.0, 0.0], [0.9, 0.2]], 0.5);
+    assert_eq!(count(&wedge), 9);
 }
 
 #[test]

@@ -3,10 +3,12 @@
 //! An edge of a CAD model and an edge of a scan may bend alike; they differ in what lies around them. Beside a crease the
 //! surface is smooth, beside an edge of a scan, or of a coarse organic shape, it bends at every edge by something in
 //! between. This is the *clutter* of an edge. A smooth surface of coarse facets is told apart by its edges side by side,
-//! which bend alike. What is found is followed through gaps, and only what lasts for some cells is kept.
+//! which bend alike. What is found is followed through gaps, and only what lasts for some cells is kept. A solid of few
+//! flat faces has hardly anything around its edges but other edges: there every sharp one is a crease.
 
 use super::dihedral::{dihedral_angle, dot};
 use super::{Curve, EdgeSet, FeatureGraph, NodeKind};
+use crate::flat::FlatParts;
 use crate::ids::{Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
 use crate::metric::Metric;
@@ -78,6 +80,12 @@ const ROUND: usize = 6;
 /// finer than the grid: the steps of voxels, for instance, for two thirds of it. Those of CAD models do for a third at most.
 const FINE: f64 = 1.5;
 
+/// Most flat faces of a polyhedron. Coarse organic shapes have some hundred.
+const MOST_FACES: usize = 40;
+
+/// Smallest bend of its creases: 40 degrees, the sides of a regular prism of nine, but for rounding.
+const SHARP: f64 = degrees(39.9);
+
 /// The creases of a surface that a grid with cells of an edge length, mesh units, should follow. Boundary edges are none.
 pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f64) -> EdgeSet {
     let cell = cell / metric.unit;
@@ -85,7 +93,8 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let found = shape.clear_chains();
     let found = shape.through_gaps(&found);
     let found = shape.without_short_ends(found, cell);
-    shape.without_specks(&found, cell)
+    let found = shape.without_specks(&found, cell);
+    shape.of_polyhedra(&found)
 }
 
 /// A surface and how it bends at its edges.
@@ -290,6 +299,21 @@ impl<'a> Shape<'a> {
         };
         let kept = self.groups(creases).into_iter().filter(|group| is_kept(group));
         EdgeSet::new(self.mesh, kept.flatten())
+    }
+
+    /// The same, but in components of few flat faces all sharp edges.
+    fn of_polyhedra(&self, creases: &EdgeSet) -> EdgeSet {
+        let none = EdgeSet::new(self.mesh, []);
+        let parts = FlatParts::new(self.mesh, self.positions, &none);
+        let (component, n_components) = self.mesh.connected_faces();
+        let mut n_parts = vec![0; n_components];
+        parts.faces.iter().for_each(|faces| n_parts[component[faces[0]] as usize] += 1);
+        let is_polyhedron = |h: Halfedge| n_parts[component[h.face()] as usize] <= MOST_FACES;
+        let is_crease = |&h: &Halfedge| match is_polyhedron(h) {
+            true => self.bend(h) >= SHARP,
+            false => creases.contains(h),
+        };
+        EdgeSet::new(self.mesh, self.mesh.interior_edges().filter(is_crease))
     }
 
     /// Whether edges are the sides of a triangle: what sticks out there is no larger than the mesh resolves.

@@ -5,14 +5,13 @@
 //! parts of the surface are triangulated anew, with points added inside and on edges; no point leaves the surface, and
 //! what is curved stays as it is.
 
-mod flat;
 mod merge;
 mod triangulate;
 
 use crate::features::EdgeSet;
-use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, VertexData};
+use crate::flat::FlatParts;
+use crate::ids::{Face, Halfedge, HalfedgeData, VertexData};
 use crate::mesh::TriMesh;
-use flat::FlatParts;
 use merge::Merged;
 use triangulate::{Part, triangulate};
 

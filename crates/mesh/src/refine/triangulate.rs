@@ -1,7 +1,7 @@
 //! A flat part of a surface, triangulated anew.
 
-use super::flat::{corners, sub};
 use super::{Face, HalfedgeData, Refinement, Source};
+use crate::flat::{corners, sub};
 use crate::metric::{cross, dot, norm};
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, HasPosition, Point2, RefinementParameters,

@@ -1,16 +1,18 @@
 //! The flat parts of a surface.
 
-use super::{EdgeSet, Face, FaceData, Halfedge, TriMesh, VertexData};
+use crate::features::EdgeSet;
+use crate::ids::{Face, FaceData, Halfedge, VertexData};
+use crate::mesh::TriMesh;
 use crate::metric::{cross, dot, norm};
 use std::collections::VecDeque;
 
 /// Faces that lie in one plane and hang together across edges that are no features.
 #[derive(Debug)]
-pub(super) struct FlatParts {
+pub(crate) struct FlatParts {
     /// The part of each face.
-    pub(super) of_face: FaceData<u32>,
+    pub(crate) of_face: FaceData<u32>,
     /// The faces of each part, ascending, in order of the first.
-    pub(super) faces: Vec<Vec<Face>>,
+    pub(crate) faces: Vec<Vec<Face>>,
 }
 
 /// Vertices this far from a plane are in it, as a part of the longest side of the face that gives it: coordinates
@@ -54,7 +56,7 @@ impl Shape {
 }
 
 impl FlatParts {
-    pub(super) fn new(mesh: &TriMesh, positions: &[[f64; 3]], features: &EdgeSet) -> Self {
+    pub(crate) fn new(mesh: &TriMesh, positions: &[[f64; 3]], features: &EdgeSet) -> Self {
         let shapes: FaceData<Shape> =
             mesh.faces().map(|f| Shape::new(corners(mesh, positions, f))).collect();
         let mut order: Vec<Face> = mesh.faces().collect();
@@ -99,7 +101,7 @@ impl FlatParts {
     }
 
     /// Parts in which features lack room, or faces area.
-    pub(super) fn in_need(
+    pub(crate) fn in_need(
         &self,
         mesh: &TriMesh,
         positions: &[[f64; 3]],
@@ -131,7 +133,7 @@ impl FlatParts {
     }
 }
 
-pub(super) fn corners(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 3] {
+pub(crate) fn corners(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 3] {
     mesh.face_vertices(f).map(|v| positions[v.at()])
 }
 
@@ -140,6 +142,6 @@ fn angle(corners: [[f64; 3]; 3], k: usize) -> f64 {
     norm(cross(a, b)).atan2(dot(a, b))
 }
 
-pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
