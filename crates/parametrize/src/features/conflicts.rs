@@ -56,7 +56,7 @@ impl ReleasedFeature {
 }
 
 /// Sectors narrower than this, in quarters, count as needles: they come from the noise of slivers.
-const NEEDLE: f64 = 0.25;
+const NEEDLE: f64 = 0.1;
 
 /// Removes features that contradict each other: of three in a triangle the flattest; of the two that bound
 /// a needle or a cap the weaker one (dihedral angle times length). Boundary edges go last.
