@@ -55,7 +55,8 @@ pub struct QuantizeOptions {
     /// Tolerance of the certificate of the seamless map in it, and of the map it is made from; what is
     /// integral is so exactly.
     pub tolerance: Tolerance,
-    /// Roundings that a component is worth, on all grids. When they are spent, the best map so far is the result.
+    /// Roundings of usual size that a component is worth, on all grids. When they are spent, the best map so far is the
+    /// result.
     pub effort: usize,
 }
 

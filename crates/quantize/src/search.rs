@@ -34,6 +34,9 @@ const REFINEMENT: f64 = 1.1;
 const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 /// Roundings on one grid, each but the first with the cuts that the one before has taught.
 const MOST_ROUNDINGS: usize = 14;
+/// Constraints times coordinates of a usual rounding; a larger one counts as so many of these, since that is what its time
+/// is proportional to.
+const USUAL_ENTRIES: f64 = 1e5;
 /// Cells of a closed component at a minimum, however coarse the grid asked for: those of a cube with two by two on each
 /// side, so that what is smaller than a cell keeps a shape.
 const FEWEST_CELLS: f64 = 24.0;
@@ -84,6 +87,8 @@ pub(crate) struct ComponentSearch<'a> {
     coarsest: Option<Candidate>,
     /// With the work done so far.
     stats: QuantizationStats,
+    /// Roundings so far, by their size.
+    work: f64,
 }
 
 impl<'a> ComponentSearch<'a> {
@@ -121,7 +126,7 @@ impl<'a> ComponentSearch<'a> {
             seconds_reduction: clock.elapsed().as_secs_f64(),
             ..Default::default()
         };
-        Ok(Self { piece, options, layout, energy, obstacles, coarsest: None, stats })
+        Ok(Self { piece, options, layout, energy, obstacles, coarsest: None, stats, work: 0.0 })
     }
 
     /// Side of a square with the area of the component, mesh units.
@@ -161,7 +166,7 @@ impl<'a> ComponentSearch<'a> {
             if is_hopeless && k < NEARBY.len() {
                 continue;
             }
-            if first.is_some() && self.stats.roundings >= self.options.effort {
+            if first.is_some() && self.work >= self.options.effort as f64 {
                 break;
             }
             match self.try_grid(share.sqrt() * asked, column, accept, watch) {
@@ -251,6 +256,8 @@ impl<'a> ComponentSearch<'a> {
             self.stats.second_roundings += usize::from(rounding.is_second);
             self.stats.repairs += usize::from(rounding.is_repaired);
             self.stats.constraints = problem.constraints.len();
+            let entries = problem.constraints.len() * problem.mean.len();
+            self.work += (entries as f64 / USUAL_ENTRIES).max(1.0);
             self.stats.seconds_rounding += clock.elapsed().as_secs_f64();
             if rounding.violated.count > 0 {
                 return Err(too_coarse(&problem, &rounding));

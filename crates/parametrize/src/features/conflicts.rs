@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 pub enum ReleaseReason {
     /// All three edges of a triangle were to be aligned: it would have to be a point.
     ThreeInTriangle,
-    /// It made a sector of less than a quarter of a quarter turn with another edge, which would have to
+    /// It made a sector of less than a fifth of a quarter turn with another edge, which would have to
     /// open to a whole one.
     Needle,
     /// It made a sector with too few triangles for its angle.
@@ -56,7 +56,7 @@ impl ReleasedFeature {
 }
 
 /// Sectors narrower than this, in quarters, count as needles: they come from the noise of slivers.
-const NEEDLE: f64 = 0.1;
+const NEEDLE: f64 = 0.2;
 
 /// Removes features that contradict each other: of three in a triangle the flattest; of the two that bound
 /// a needle or a cap the weaker one (dihedral angle times length). Boundary edges go last.
