@@ -36,7 +36,7 @@ const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 const MOST_ROUNDINGS: usize = 14;
 /// Constraints times coordinates of a usual rounding; a larger one counts as so many of these, since that is what its time
 /// is proportional to.
-const USUAL_ENTRIES: f64 = 1e5;
+const USUAL_ENTRIES: f64 = 5e5;
 /// Cells of a closed component at a minimum, however coarse the grid asked for: those of a cube with two by two on each
 /// side, so that what is smaller than a cell keeps a shape.
 const FEWEST_CELLS: f64 = 24.0;
