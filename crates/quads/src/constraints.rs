@@ -1,10 +1,9 @@
 //! Where the vertices of a quad mesh may go on a surface.
 
 use crate::QuadConnectivity;
+use crate::curve::Curve;
 use crate::surface::Surface;
-use crate::vector::{Point, vector};
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::Polyline;
+use crate::vector::Point;
 
 /// Vertices that may not go everywhere on the surface. Those on the boundary of the quads that are on no curve stay
 /// where they are, too.
@@ -21,14 +20,14 @@ pub struct Constraints {
 pub struct SlideCurve {
     /// The corners of the curve in order; of a closed one, the first comes again. Without two, the vertices are fixed.
     pub points: Vec<[f64; 3]>,
-    /// The vertices of the quad mesh on it.
+    /// The vertices of the quad mesh on it, in any order; also those at its ends, which may be fixed.
     pub vertices: Vec<u32>,
 }
 
 /// A surface, and where on it each vertex may go.
 pub(crate) struct Domain {
     surface: Surface,
-    curves: Vec<Polyline>,
+    curves: Vec<Curve>,
     places: Vec<Place>,
 }
 
@@ -59,9 +58,9 @@ impl Domain {
         let mut curves = Vec::new();
         for curve in &constraints.curves {
             let mut place = Place::Fixed;
-            if curve.points.len() > 1 {
+            if let Some(curve) = Curve::new(&curve.points) {
                 place = Place::OnCurve(curves.len() as u32);
-                curves.push(Polyline::new(curve.points.iter().map(|&p| vector(p)).collect(), None));
+                curves.push(curve);
             }
             curve.vertices.iter().for_each(|&v| put(v, place));
         }
@@ -74,14 +73,18 @@ impl Domain {
         self.places[v as usize] == Place::Fixed
     }
 
+    /// Whether a vertex may go everywhere on the surface.
+    pub(crate) fn is_free(&self, v: u32) -> bool {
+        self.places[v as usize] == Place::Anywhere
+    }
+
     /// The point nearest to a target among those where a vertex may be, and the unit normal of the surface there; of
     /// fixed ones, on the surface.
     pub(crate) fn place(&self, v: u32, target: Point) -> (Point, Point) {
         let Place::OnCurve(curve) = self.places[v as usize] else {
             return self.surface.nearest(target);
         };
-        let found = self.curves[curve as usize].project_local_point(vector(target), false);
-        let at = [found.point.x, found.point.y, found.point.z];
+        let at = self.curves[curve as usize].nearest(target);
         (at, self.surface.normal(at))
     }
 

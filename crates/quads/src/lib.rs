@@ -3,14 +3,18 @@
 mod badness;
 mod connectivity;
 mod constraints;
+mod curve;
 pub mod extract;
 pub mod layout;
 mod manifold;
 mod mesh;
+mod moves;
 mod pinches;
 pub mod quality;
 pub mod smooth;
+mod spacing;
 mod split;
+mod stretch;
 mod surface;
 mod surface_point;
 mod untangle;

@@ -1,11 +1,11 @@
 //! Smoothing along a surface.
 
-use crate::badness;
 use crate::constraints::{Constraints, Domain};
-use crate::quality::Orientation;
+use crate::moves::{Fair, Moves};
 use crate::surface::Surface;
 use crate::vector::{Point, add};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
+use seamstress_linalg::NotPositiveDefinite;
 use seamstress_parallel::prelude::*;
 
 /// How to smooth.
@@ -33,6 +33,9 @@ pub enum SmoothError {
     /// The surface has no triangles to project to.
     #[error("the surface to smooth on cannot be used: {0}")]
     BadSurface(String),
+    /// The system of the vertices around curves could not be solved.
+    #[error("the vertices around curves could not be moved: {0}")]
+    NoFactor(#[from] NotPositiveDefinite),
 }
 
 /// A smoothed mesh.
@@ -47,6 +50,8 @@ pub struct Smoothed {
 
 /// Part of the way to the mean of the neighbours that a vertex goes in one round.
 const STEP: f64 = 0.5;
+/// No corner may become worse; sides may, of any length.
+const FAIR: Fair = Fair { corner: 0.0, thinness: f64::INFINITY };
 
 /// Moves the vertices of a quad mesh along a surface towards the means of their neighbours.
 ///
@@ -70,71 +75,33 @@ pub fn smooth(
     let domain = Domain::new(surface, &connectivity, positions.len(), &options.constraints);
     let movable: Vec<u32> = (0..positions.len() as u32).filter(|&v| !domain.is_fixed(v)).collect();
     let normals = positions.par_iter().map(|&p| domain.normal(p)).collect();
-    let mut state = State { connectivity: &connectivity, quads: mesh.quads(), positions, normals };
+    let mut moves = Moves::new(&connectivity, mesh.quads(), positions, normals);
     let mut refused = 0;
     for _ in 0..options.rounds {
-        let on_surface = |&v: &u32| domain.place(v, state.target(v));
+        let on_surface = |&v: &u32| domain.place(v, target(&connectivity, &moves.positions, v));
         let targets: Vec<(Point, Point)> = movable.par_iter().map(on_surface).collect();
-        refused = movable.iter().zip(targets).filter(|&(&v, to)| !state.try_move(v, to)).count();
+        refused =
+            movable.iter().zip(targets).filter(|&(&v, to)| !moves.try_move(v, to, FAIR)).count();
     }
-    let positions = state.positions;
-    Ok(Smoothed { mesh: QuadMesh::from_parts(positions, mesh.quads().to_vec()), refused })
+    Ok(Smoothed { mesh: QuadMesh::from_parts(moves.positions, mesh.quads().to_vec()), refused })
 }
 
-struct State<'a> {
-    connectivity: &'a QuadConnectivity,
-    quads: &'a [[u32; 4]],
-    positions: Vec<Point>,
-    /// Of the surface, where the vertices are.
-    normals: Vec<Point>,
-}
-
-impl State<'_> {
-    /// Towards the mean of the neighbours.
-    fn target(&self, v: u32) -> Point {
-        let (mut sum, mut count) = ([0.0; 3], 0.0);
-        for n in self.connectivity.neighbours(v) {
-            sum = add(sum, self.positions[n as usize]);
-            count += 1.0;
-        }
-        let here = self.positions[v as usize];
-        [0, 1, 2].map(|k| here[k] + STEP * (sum[k] / count - here[k]))
+/// Where a vertex goes: towards the mean of its neighbours.
+fn target(connectivity: &QuadConnectivity, positions: &[Point], v: u32) -> Point {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for n in connectivity.neighbours(v) {
+        sum = add(sum, positions[n as usize]);
+        count += 1.0;
     }
-
-    /// Moves a vertex, with the normal there, unless that makes its quads worse.
-    fn try_move(&mut self, v: u32, to: (Point, Point)) -> bool {
-        let (faults, worst) = self.around(v);
-        let from = self.put(v, to);
-        let (faults_there, worst_there) = self.around(v);
-        let is_better = faults_there <= faults && worst_there <= worst;
-        if !is_better {
-            self.put(v, from);
-        }
-        is_better
-    }
-
-    /// Puts a vertex somewhere; from where, is returned.
-    fn put(&mut self, v: u32, (at, normal): (Point, Point)) -> (Point, Point) {
-        let from = std::mem::replace(&mut self.positions[v as usize], at);
-        (from, std::mem::replace(&mut self.normals[v as usize], normal))
-    }
-
-    /// The number of inverted and crossed quads around a vertex, and the worst corner.
-    fn around(&self, v: u32) -> (usize, f64) {
-        let quads = self.connectivity.outgoing(v).map(|h| self.quads[(h / 4) as usize]);
-        quads.fold((0, 0.0), |(faults, worst), quad| {
-            let points = quad.map(|v| self.positions[v as usize]);
-            let normals = quad.map(|v| self.normals[v as usize]);
-            let faults = faults + Orientation::of_polygon(&points, &normals).faults();
-            let bad = badness::on_surface(points, normals).into_iter().fold(worst, f64::max);
-            (faults, bad)
-        })
-    }
+    let here = positions[v as usize];
+    [0, 1, 2].map(|k| here[k] + STEP * (sum[k] / count - here[k]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::badness;
+    use crate::quality::Orientation;
     use crate::vector::{dot, sub};
     use seamstress_testkit::{Rng, cube, disk_grid};
 

@@ -156,6 +156,7 @@ fn vertices_on_features_stay_on_their_curves() {
             }
         }
         held.sort_unstable();
+        held.dedup();
         let on_features: Vec<u32> = match n_nodes {
             // All vertices with two coordinates of the cube's sides.
             8 => (0..quads.n_vertices() as u32)

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 impl Extraction {
     /// What keeps vertices of the quad mesh on edges of the source and on its boundary: those at ends, turns and
-    /// junctions of the curves that these edges form are fixed, others slide along their curve.
+    /// junctions of the curves that these edges form are fixed, others slide along their curve. Curves list both.
     ///
     /// Edges are named by their ends. A vertex counts as on an edge if the map has it there exactly.
     pub fn constraints(
@@ -20,8 +20,14 @@ impl Extraction {
         let edges = named(source, edges).union(source, &EdgeSet::boundary(source));
         let metric = Metric::from_positions(source, positions);
         let graph = FeatureGraph::new(source, &metric, &edges);
-        let mut is_node = VertexData::filled(source.n_vertices(), false);
-        graph.nodes.iter().for_each(|node| is_node[node.vertex] = true);
+        let mut ends = VertexData::filled(source.n_vertices(), Vec::new());
+        for (c, curve) in graph.curves.iter().enumerate().filter(|(_, curve)| !curve.is_loop) {
+            let [first, last] = [curve.vertices[0], curve.vertices[curve.vertices.len() - 1]];
+            ends[first].push(c);
+            if last != first {
+                ends[last].push(c);
+            }
+        }
         let mut curve_of = HalfedgeData::filled(source.n_halfedges(), None);
         for (c, curve) in graph.curves.iter().enumerate() {
             curve.edges.iter().for_each(|&edge| curve_of[edge] = Some(c));
@@ -33,8 +39,9 @@ impl Extraction {
         let mut constraints = Constraints { fixed: Vec::new(), curves };
         for (v, at) in (0..).zip(&self.sources) {
             let edge = match Site::new(source, at) {
-                Site::Vertex(at) if is_node[at] => {
+                Site::Vertex(at) if !ends[at].is_empty() => {
                     constraints.fixed.push(v);
+                    ends[at].iter().for_each(|&c| constraints.curves[c].vertices.push(v));
                     continue;
                 }
                 Site::Vertex(at) => edges.around(source, at).next().map(|(edge, _)| edge),

@@ -14,6 +14,9 @@ const POWER: i32 = 4;
 const AREA_WEIGHT: f64 = 0.2;
 /// Added to the squared relative length of an edge, so that one of no length has a gradient.
 const SMALL_SQUARE: f64 = 1e-4;
+/// Weight of the evenness of edges along curves. With none, angles became better by edges of next to no length; with
+/// 1, more curves stayed uneven.
+const EVEN_WEIGHT: f64 = 4.0;
 /// Slope of the pull on the corners of a bent quad, energy per edge: a few times what the corners of a fair quad exert.
 const PULL: f64 = 4.0;
 
@@ -26,7 +29,8 @@ const PULL: f64 = 4.0;
 ///
 /// for small eps a power of the inverse sine of its angle, and infinite as it becomes reflex. Each vertex counts
 /// `d^2 / (r^2 - d^2)`, with `d` the distance of its quads from the point it comes from and `r` how large that may
-/// become. Bent quads, whose corners see no common side of the surface, are drawn towards the edge of the thin sheet
+/// become; each edge along a curve `EVEN_WEIGHT (x^2 + 1 / x^2 - 2)`, with `x` its length in units of what it would be
+/// if the edges of the curve were even. Bent quads, whose corners see no common side of the surface, are drawn towards the edge of the thin sheet
 /// they lie over, or to the bottom of the slot that they span: there they are on one side.
 ///
 /// Normals are those of the sites that the energy was made for.
@@ -60,7 +64,8 @@ impl<'a> Energy<'a> {
             }
         };
         let corners = self.corners(sites, &mut slope);
-        let energy = corners + self.tethers(sites, &mut slope) + self.pull(sites, &mut slope);
+        let tethers = self.tethers(sites, &mut slope) + self.pull(sites, &mut slope);
+        let energy = corners + tethers + self.curve_edges(sites, &mut slope);
         for (part, site) in gradient.iter_mut().zip(sites) {
             *part = sub(*part, scale(site.normal, dot(site.normal, *part)));
         }
@@ -105,6 +110,21 @@ impl<'a> Energy<'a> {
             let (point, weights) = nearest_in_triangle(tether.home, corners);
             let away = scale(sub(point, tether.home), 2.0 * square / (left * left));
             half.iter().zip(weights).for_each(|(&v, weight)| slope(v, scale(away, weight)));
+        }
+        sum
+    }
+
+    fn curve_edges(&self, sites: &[Site], slope: &mut impl FnMut(u32, Point)) -> f64 {
+        let mut sum = 0.0;
+        for edge in &self.patch.curve_edges {
+            let [from, to] = edge.ends.map(|v| sites[v as usize].at);
+            let along = scale(sub(to, from), edge.length.recip());
+            let square = dot(along, along) + SMALL_SQUARE;
+            sum += EVEN_WEIGHT * (square + square.recip() - 2.0);
+            let by_square = EVEN_WEIGHT * (1.0 - (square * square).recip());
+            let by_end = scale(along, 2.0 * by_square / edge.length);
+            slope(edge.ends[1], by_end);
+            slope(edge.ends[0], scale(by_end, -1.0));
         }
         sum
     }

@@ -1,6 +1,6 @@
 //! Untangling of the worst quads along the surface they approximate.
 //!
-//! Quads with a corner far from a right angle, and those turned against the surface, are taken one after the other,
+//! Vertices on curves are spaced evenly first ([`evenly_spaced`]). Then quads with a corner far from a right angle, and those turned against the surface, are taken one after the other,
 //! each with some rings of quads around it: a [`Patch`]. The movable vertices of a patch minimise a barrier energy of
 //! all its corners ([`Energy`]) along the surface, by a quasi-Newton method whose regularisation is lowered step by
 //! step ([`untangled`]). A few sweeps over all such quads, from small patches to large ones, bring most of them into
@@ -15,11 +15,13 @@ mod tests;
 
 use crate::constraints::{Constraints, Domain};
 use crate::smooth::SmoothError;
+use crate::spacing::evenly_spaced;
+use crate::stretch::{curves, stretches};
 use crate::surface::Surface;
 use crate::vector::{Point, norm, sub};
 use crate::{QuadConnectivity, QuadMesh};
 use descent::untangled;
-use patch::Patch;
+use patch::{CurveEdge, Patch};
 use score::worst_corner;
 use seamstress_parallel::prelude::*;
 
@@ -75,7 +77,11 @@ const STRAIGHT: f64 = 1.0;
 /// Sweeps, at most. Patches overlap, and one may give another room.
 const SWEEPS: usize = 6;
 
-/// Moves the vertices of badly shaped quads along a surface until their corners are better.
+/// Spaces the vertices on curves evenly, and moves those of badly shaped quads along a surface until their corners are
+/// better.
+///
+/// Where edges along a curve differ by more than a factor of two between two vertices that stay, or around a loop along
+/// which none does, the vertices slide along the curve, and those around follow, as far as no quad is harmed.
 ///
 /// Quads that are turned against the surface, or have a corner further from a right angle than asked for, are
 /// improved together with the quads around them; all other vertices stay, and fixed ones. A patch is changed only
@@ -106,16 +112,20 @@ fn untangle_within(
 ) -> Result<Untangling, SmoothError> {
     let connectivity = mesh.connectivity()?;
     let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
-    let homes = mesh.positions();
-    let domain = Domain::new(surface, &connectivity, homes.len(), &options.constraints);
+    let given = mesh.positions();
+    let domain = Domain::new(surface, &connectivity, given.len(), &options.constraints);
+    let curves = curves(&options.constraints);
+    let stretches = stretches(&curves, &domain, &connectivity, given);
+    let homes = evenly_spaced(mesh, &connectivity, &domain, &stretches)?;
     let site = |&at: &Point| Site { at, normal: domain.normal(at) };
     let mut state = State {
         connectivity: &connectivity,
         quads: mesh.quads(),
         domain: &domain,
-        homes,
+        homes: &homes,
         sites: homes.par_iter().map(site).collect(),
         sides: patch::side_lengths(&connectivity, mesh),
+        curve_edges: patch::curve_edges(&stretches, homes.len()),
     };
     let deviation = options.deviation.to_radians().sin();
     for _ in 0..SWEEPS {
@@ -126,7 +136,7 @@ fn untangle_within(
         }
     }
     let positions: Vec<Point> = state.sites.iter().map(|site| site.at).collect();
-    let moves = || positions.iter().zip(homes).map(|(&to, &from)| norm(sub(to, from)));
+    let moves = || positions.iter().zip(given).map(|(&to, &from)| norm(sub(to, from)));
     Ok(Untangling {
         moved: moves().filter(|&length| length > 0.0).count(),
         largest_move: moves().fold(0.0, f64::max),
@@ -146,11 +156,13 @@ struct State<'a> {
     connectivity: &'a QuadConnectivity,
     quads: &'a [[u32; 4]],
     domain: &'a Domain,
-    /// Where the vertices come from.
+    /// Where the vertices come from, evenly spaced.
     homes: &'a [Point],
     sites: Vec<Site>,
     /// The lengths that the sides of each quad should have: of sides 0 and 2, and of sides 1 and 3.
     sides: Vec<[f64; 2]>,
+    /// Of each vertex, the edges along curves that start there.
+    curve_edges: Vec<Vec<CurveEdge>>,
 }
 
 impl State<'_> {

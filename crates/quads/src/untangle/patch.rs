@@ -1,6 +1,7 @@
 //! A quad to be improved, with those around it.
 
 use super::{Reach, Site, State};
+use crate::stretch::Stretch;
 use crate::surface::distance_to_triangle;
 use crate::vector::{Point, norm, sub};
 use crate::{QuadConnectivity, QuadMesh};
@@ -16,10 +17,20 @@ pub(super) struct Patch {
     pub(super) quads: Vec<[u32; 4]>,
     /// The lengths that sides 0 and 2, and sides 1 and 3, of each quad should have.
     pub(super) sides: Vec<[f64; 2]>,
+    /// Edges along curves with an end that moves.
+    pub(super) curve_edges: Vec<CurveEdge>,
     /// Of the vertices that move.
     pub(super) tethers: Vec<Tether>,
     /// The mean length of an edge.
     pub(super) edge: f64,
+}
+
+/// An edge along a curve.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CurveEdge {
+    pub(super) ends: [u32; 2],
+    /// The length it would have if all edges of its stretch were even.
+    pub(super) length: f64,
 }
 
 /// What keeps the quads around a vertex near the surface.
@@ -75,8 +86,15 @@ impl Patch {
         for tether in &mut tethers {
             tether.radius = tether.radius.max(LEEWAY * tether.nearest(&sites).1);
         }
+        let starts = vertices.iter().flat_map(|&v| &state.curve_edges[v as usize]);
+        let moves = |edge: &&CurveEdge| edge.ends.iter().any(|v| inner.binary_search(v).is_ok());
+        let curve_edges = starts.filter(moves).map(|edge| {
+            let ends = edge.ends.map(|v| number(v) as u32);
+            CurveEdge { ends, ..*edge }
+        });
+        let curve_edges = curve_edges.collect();
         let sides = ids.iter().map(|&q| state.sides[q as usize]).collect();
-        Self { vertices, sites, quads, sides, tethers, edge }
+        Self { vertices, sites, quads, sides, curve_edges, tethers, edge }
     }
 }
 
@@ -89,6 +107,19 @@ impl Tether {
             if distance < best.1 { (half, distance) } else { best }
         })
     }
+}
+
+/// For each vertex the edges along curves that start there.
+pub(super) fn curve_edges(stretches: &[Stretch<'_>], n_vertices: usize) -> Vec<Vec<CurveEdge>> {
+    let mut starting = vec![Vec::new(); n_vertices];
+    for stretch in stretches {
+        let length = stretch.edge();
+        for pair in stretch.vertices.windows(2) {
+            let ends = [pair[0].0, pair[1].0];
+            starting[ends[0] as usize].push(CurveEdge { ends, length });
+        }
+    }
+    starting
 }
 
 /// Rounds in which each quad takes the mean of its neighbours: enough to see past a knot.

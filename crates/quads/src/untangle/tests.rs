@@ -162,6 +162,62 @@ fn vertices_on_a_curve_slide_along_it() {
     }
 }
 
+/// A flat ring of quads between circles of radius 1 and 2, with vertices at given angles.
+fn ring(rows: usize, angles: &[f64]) -> (Vec<Point>, Vec<[u32; 4]>) {
+    let columns = angles.len();
+    let at = |row: usize, column: usize| (row * columns + column % columns) as u32;
+    let radius = |row: usize| 1.0 + row as f64 / (rows - 1) as f64;
+    let point =
+        |row: usize, angle: f64| [radius(row) * angle.cos(), radius(row) * angle.sin(), 0.0];
+    let points = (0..rows).flat_map(|row| angles.iter().map(move |&angle| point(row, angle)));
+    let cells = (1..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let quads =
+        cells.map(|(r, c)| [at(r - 1, c), at(r, c), at(r, c + 1), at(r - 1, c + 1)]).collect();
+    (points.collect(), quads)
+}
+
+#[test]
+fn vertices_on_a_hole_become_even_and_the_hole_stays_round() {
+    let turn = |n: usize| (0..n).map(move |k| std::f64::consts::TAU * k as f64 / n as f64);
+    let fine: Vec<f64> = turn(120).collect();
+    let (points, faces) = ring(2, &fine);
+    let faces: Vec<[u32; 3]> =
+        faces.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    // Edges of the circles differ by a factor of more than five.
+    let crowded: Vec<f64> = turn(24).map(|angle| angle + 0.7 * angle.sin()).collect();
+    let (positions, quads) = ring(4, &crowded);
+    let closed = |row: usize| (0..=120).map(|k| points[120 * row + k % 120]).collect();
+    let circle = |row: usize, first: u32| SlideCurve {
+        points: closed(row),
+        vertices: (first..first + 24).collect(),
+    };
+    let curves = vec![circle(0, 0), circle(1, 72)];
+    for fixed in [vec![], vec![3, 75]] {
+        let constraints = Constraints { fixed, curves: curves.clone() };
+        let mesh = QuadMesh::new(positions.clone(), quads.clone()).unwrap();
+        let ratio = |mesh: &QuadMesh, first: usize| {
+            let at = |k: usize| mesh.positions()[first + k % 24];
+            let lengths: Vec<f64> = (0..24).map(|k| norm(sub(at(k), at(k + 1)))).collect();
+            let longest = lengths.iter().copied().fold(0.0, f64::max);
+            longest / lengths.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        assert!(ratio(&mesh, 0) > 5.0);
+        let options =
+            UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
+        let even = untangle(&mesh, (&points, &faces), &options).unwrap().mesh;
+        assert!(ratio(&even, 0) < 3.0 && ratio(&even, 72) < 3.0);
+        let radius = |&v: &u32| norm(even.positions()[v as usize]);
+        let is_round = |v: &u32| (0.9996..=1.0).contains(&radius(v));
+        assert!(curves[0].vertices.iter().all(is_round));
+        for &v in &constraints.fixed {
+            assert_eq!(even.positions()[v as usize], mesh.positions()[v as usize]);
+        }
+        // No quad is slanted by more than the 30 degrees that evenness may cost.
+        let after = angles(&even);
+        assert!(after.min >= 59.9 && after.max <= 120.1, "{after:?}");
+    }
+}
+
 #[test]
 fn tips_are_not_cut_off() {
     // One line is slanted; the apex is the only vertex on top.
