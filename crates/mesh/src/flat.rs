@@ -1,12 +1,11 @@
 //! The flat parts of a surface.
 
-use crate::features::EdgeSet;
-use crate::ids::{Face, FaceData, Halfedge, VertexData};
+use crate::ids::{Face, FaceData, Halfedge};
 use crate::mesh::TriMesh;
 use crate::metric::{cross, dot, norm};
 use std::collections::VecDeque;
 
-/// Faces that lie in one plane and hang together across edges that are no features.
+/// Faces that lie in one plane and hang together.
 #[derive(Debug)]
 pub(crate) struct FlatParts {
     /// The part of each face.
@@ -23,8 +22,6 @@ const FLAT: f64 = 1e-6;
 const ALIKE: f64 = 0.999;
 /// A face with a height below this part of its longest side has no area to speak of, and no plane.
 const NO_AREA: f64 = 1e-9;
-/// Angles below this at a feature are those of needles, radians: five degrees.
-const NEEDLE: f64 = 0.087;
 
 /// A face in space.
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +53,12 @@ impl Shape {
 }
 
 impl FlatParts {
-    pub(crate) fn new(mesh: &TriMesh, positions: &[[f64; 3]], features: &EdgeSet) -> Self {
+    /// The parts of a surface, given the edges that no part goes across.
+    pub(crate) fn new(
+        mesh: &TriMesh,
+        positions: &[[f64; 3]],
+        is_border: impl Fn(Halfedge) -> bool,
+    ) -> Self {
         let shapes: FaceData<Shape> =
             mesh.faces().map(|f| Shape::new(corners(mesh, positions, f))).collect();
         let mut order: Vec<Face> = mesh.faces().collect();
@@ -74,7 +76,7 @@ impl FlatParts {
             };
             let (mut members, mut queue) = (vec![seed], VecDeque::from([seed]));
             while let Some(f) = queue.pop_front().filter(|_| plane.has_area()) {
-                let sides = f.halfedges().into_iter().filter(|&h| !features.contains(h));
+                let sides = f.halfedges().into_iter().filter(|&h| !is_border(h));
                 for twin in sides.filter_map(|h| mesh.twin(h)) {
                     let (g, shape) = (twin.face(), shapes[twin.face()]);
                     let faces_alike = match shape.has_area() {
@@ -99,45 +101,19 @@ impl FlatParts {
         }
         Self { of_face, faces }
     }
+}
 
-    /// Parts in which features lack room, or faces area.
-    pub(crate) fn in_need(
-        &self,
-        mesh: &TriMesh,
-        positions: &[[f64; 3]],
-        features: &EdgeSet,
-        is_on_curve: &VertexData<bool>,
-    ) -> Vec<bool> {
-        let joins_curves = |&h: &Halfedge| {
-            let on_curves = [mesh.origin(h), mesh.tip(h)].iter().all(|&v| is_on_curve[v]);
-            on_curves && !features.contains(h)
-        };
-        let needs = |faces: &Vec<Face>| {
-            faces.iter().any(|&f| {
-                let sides = f.halfedges();
-                let n_features = sides.iter().filter(|&&h| features.contains(h)).count();
-                let corners = corners(mesh, positions, f);
-                let is_needle = |&h: &Halfedge| {
-                    faces.len() > 1
-                        && is_on_curve[mesh.origin(h)]
-                        && angle(corners, h.side()) < NEEDLE
-                };
-                let has_area = Shape::new(corners).has_area();
-                n_features > 1
-                    || sides.iter().any(joins_curves)
-                    || sides.iter().any(is_needle)
-                    || (faces.len() > 1 && !has_area)
-            })
-        };
-        self.faces.iter().map(needs).collect()
-    }
+/// Whether three points span an area to speak of.
+pub(crate) fn has_area(corners: [[f64; 3]; 3]) -> bool {
+    Shape::new(corners).has_area()
 }
 
 pub(crate) fn corners(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 3] {
     mesh.face_vertices(f).map(|v| positions[v.at()])
 }
 
-fn angle(corners: [[f64; 3]; 3], k: usize) -> f64 {
+/// The angle at a corner, radians.
+pub(crate) fn angle(corners: [[f64; 3]; 3], k: usize) -> f64 {
     let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
     norm(cross(a, b)).atan2(dot(a, b))
 }

@@ -303,8 +303,7 @@ impl<'a> Shape<'a> {
 
     /// The same, but in components of few flat faces all sharp edges.
     fn of_polyhedra(&self, creases: &EdgeSet) -> EdgeSet {
-        let none = EdgeSet::new(self.mesh, []);
-        let parts = FlatParts::new(self.mesh, self.positions, &none);
+        let parts = FlatParts::new(self.mesh, self.positions, |_| false);
         let (component, n_components) = self.mesh.connected_faces();
         let mut n_parts = vec![0; n_components];
         parts.faces.iter().for_each(|faces| n_parts[component[faces[0]] as usize] += 1);

@@ -9,7 +9,7 @@ mod merge;
 mod triangulate;
 
 use crate::features::EdgeSet;
-use crate::flat::FlatParts;
+use crate::flat::{FlatParts, angle, corners, has_area};
 use crate::ids::{Face, Halfedge, HalfedgeData, VertexData};
 use crate::mesh::TriMesh;
 use merge::Merged;
@@ -37,6 +37,8 @@ pub struct FeaturePiece {
     pub source: [u32; 2],
 }
 
+/// Angles below this at a feature are those of needles, radians: five degrees.
+const NEEDLE: f64 = 0.087;
 /// Pieces of an edge that joins two feature curves, at a minimum.
 const FEWEST_PIECES: usize = 2;
 /// Pieces of an edge at most, whatever its length.
@@ -65,6 +67,35 @@ pub fn refine(
     Some(refined)
 }
 
+/// Parts in which features lack room, or faces area.
+fn in_need(
+    parts: &FlatParts,
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    features: &EdgeSet,
+    is_on_curve: &VertexData<bool>,
+) -> Vec<bool> {
+    let joins_curves = |&h: &Halfedge| {
+        let on_curves = [mesh.origin(h), mesh.tip(h)].iter().all(|&v| is_on_curve[v]);
+        on_curves && !features.contains(h)
+    };
+    let needs = |faces: &Vec<Face>| {
+        faces.iter().any(|&f| {
+            let sides = f.halfedges();
+            let n_features = sides.iter().filter(|&&h| features.contains(h)).count();
+            let corners = corners(mesh, positions, f);
+            let is_needle = |&h: &Halfedge| {
+                faces.len() > 1 && is_on_curve[mesh.origin(h)] && angle(corners, h.side()) < NEEDLE
+            };
+            n_features > 1
+                || sides.iter().any(joins_curves)
+                || sides.iter().any(is_needle)
+                || (faces.len() > 1 && !has_area(corners))
+        })
+    };
+    parts.faces.iter().map(needs).collect()
+}
+
 /// Vertices on feature edges.
 fn on_curves(mesh: &TriMesh, features: &EdgeSet) -> VertexData<bool> {
     let mut is_on_curve = VertexData::filled(mesh.n_vertices(), false);
@@ -88,9 +119,9 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn new(mesh: &'a TriMesh, positions: &'a [[f64; 3]], features: &'a EdgeSet) -> Self {
-        let parts = FlatParts::new(mesh, positions, features);
+        let parts = FlatParts::new(mesh, positions, |h| features.contains(h));
         let is_on_curve = on_curves(mesh, features);
-        let needs_room = parts.in_need(mesh, positions, features, &is_on_curve);
+        let needs_room = in_need(&parts, mesh, positions, features, &is_on_curve);
         Self { mesh, positions, features, is_on_curve, parts, needs_room }
     }
 
