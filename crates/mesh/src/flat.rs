@@ -12,6 +12,8 @@ pub(crate) struct FlatParts {
     pub(crate) of_face: FaceData<u32>,
     /// The faces of each part, ascending, in order of the first.
     pub(crate) faces: Vec<Vec<Face>>,
+    /// The area of each part, square of the unit of the positions.
+    pub(crate) area: Vec<f64>,
 }
 
 /// Vertices this far from a plane are in it, as a part of the longest side of the face that gives it: coordinates
@@ -99,7 +101,8 @@ impl FlatParts {
         for (part, members) in faces.iter().enumerate() {
             members.iter().for_each(|&f| of_face[f] = part as u32);
         }
-        Self { of_face, faces }
+        let area = |faces: &Vec<Face>| faces.iter().map(|&f| shapes[f].area).sum();
+        Self { area: faces.iter().map(area).collect(), of_face, faces }
     }
 }
 

@@ -41,6 +41,8 @@ pub struct FeaturePiece {
 const NEEDLE: f64 = 0.087;
 /// Pieces of an edge that joins two feature curves, at a minimum.
 const FEWEST_PIECES: usize = 2;
+/// Edges of a part are at most as long as this multiple of the side of a square of its area, so that it gets points inside.
+const PART: f64 = 1.0;
 /// Pieces of an edge at most, whatever its length.
 const MOST_PIECES: f64 = 1000.0;
 
@@ -142,7 +144,7 @@ impl<'a> Source<'a> {
                 }
                 continue;
             }
-            let size = self.needs_room[part].then_some(size);
+            let size = self.needs_room[part].then(|| self.size(part as u32, size));
             let part = Part { source: self, faces, pieces: &pieces, size };
             triangulate(&part, &mut refined);
         }
@@ -160,10 +162,10 @@ impl<'a> Source<'a> {
         let mut pieces = HalfedgeData::filled(self.mesh.n_halfedges(), Vec::new());
         for h in self.mesh.edges() {
             let twin = self.mesh.twin(h);
-            let needs = |h: Halfedge| self.needs_room[self.parts.of_face[h.face()] as usize];
-            if !self.is_border(h) || !(needs(h) || twin.is_some_and(needs)) {
-                continue;
-            }
+            let parts = [Some(h), twin].into_iter().flatten().map(|h| self.parts.of_face[h.face()]);
+            let in_need = parts.filter(|&part| self.needs_room[part as usize]);
+            let sizes = in_need.map(|part| self.size(part, size));
+            let Some(size) = sizes.reduce(f64::min).filter(|_| self.is_border(h)) else { continue };
             let ends = [self.mesh.origin(h), self.mesh.tip(h)];
             let [a, b] = ends.map(|v| self.positions[v.at()]);
             let length = crate::metric::norm([0, 1, 2].map(|k| b[k] - a[k]));
@@ -182,6 +184,11 @@ impl<'a> Source<'a> {
             }
         }
         pieces
+    }
+
+    /// The length of edges in a part that needs room.
+    fn size(&self, part: u32, size: f64) -> f64 {
+        size.min(PART * self.parts.area[part as usize].sqrt())
     }
 
     fn is_border(&self, h: Halfedge) -> bool {

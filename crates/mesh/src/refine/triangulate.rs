@@ -86,6 +86,8 @@ struct Plane {
     /// Two orthogonal vectors, as long as one over the extent.
     axes: [[f64; 3]; 2],
     extent: f64,
+    /// The largest face.
+    largest: [Point2<f64>; 3],
 }
 
 /// Sites, and the triangles between them.
@@ -112,7 +114,9 @@ impl Plane {
         };
         let (normal, first) = (unit(doubled(largest))?, unit(sub(b, origin))?);
         let axes = [first, cross(normal, first)].map(|axis| axis.map(|x| x / extent));
-        Some(Self { origin, axes, extent })
+        let plane = Self { origin, axes, extent, largest: [Point2::new(0.0, 0.0); 3] };
+        let largest = part.corners(largest).map(|p| plane.project(p));
+        Some(Self { largest, ..plane })
     }
 
     fn project(&self, p: [f64; 3]) -> Point2<f64> {
@@ -145,6 +149,10 @@ impl Plane {
         let area = part.faces.iter().map(|&f| self.area(part.corners(f)));
         let area: f64 = area.sum();
         if let Some(size) = part.size {
+            // Refinement alone adds none where that would be close to the border.
+            let [a, b, c] = self.largest;
+            let center = Point2::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);
+            delaunay.insert(Site { at: center, vertex: None }).ok()?;
             let size = size / self.extent;
             let largest = (AREA_OF_SQUARE * size * size).min(area / FEWEST_TRIANGLES);
             let parameters = RefinementParameters::new()
