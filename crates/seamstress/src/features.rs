@@ -368,7 +368,6 @@ impl FeatureCurves {
 
     /// Those that quads follow, by their ends; the report names the others, dropped for that reason.
     pub(crate) fn followed_by(&self, extraction: &Extraction) -> (Vec<[u32; 2]>, FeatureReport) {
-        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
         let on_lines: BTreeSet<[u32; 2]> =
             extraction.edges_on_grid_lines.iter().copied().map(ordered).collect();
         let is_followed = |pair: &[u32; 2]| on_lines.contains(&ordered(*pair));
@@ -421,7 +420,6 @@ impl AlignedFeatures {
         map: &SeamlessMap,
         dropped: &[ReleasedFeature],
     ) -> Result<Self, Violations> {
-        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
         let gone: BTreeSet<[u32; 2]> = dropped.iter().map(|f| ordered(f.vertices)).collect();
         let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
         let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
@@ -438,6 +436,11 @@ impl AlignedFeatures {
     pub(crate) fn dropped_pairs(&self) -> Vec<[u32; 2]> {
         self.dropped.iter().map(|feature| feature.vertices).collect()
     }
+}
+
+/// The ends of an edge, ascending.
+pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// The set of edges with these ends.

@@ -1,7 +1,7 @@
 //! A finer mesh of a surface to make its quads on.
 
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of};
+use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of, ordered};
 use crate::surface::Surface;
 use seamstress_mesh::refine::{Refinement, refine};
 use seamstress_parametrize::ReleasedFeature;
@@ -95,8 +95,4 @@ impl Workpiece {
         }
         Ok(())
     }
-}
-
-fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

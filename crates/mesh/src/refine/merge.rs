@@ -3,6 +3,7 @@
 use super::{EdgeSet, TriMesh};
 use crate::ids::Vertex;
 use crate::metric::norm;
+use crate::soup::sets::SignedSets;
 use std::collections::HashMap;
 
 /// A mesh whose edges without length have been collapsed. Vertices keep their numbers; some are no longer used.
@@ -25,20 +26,19 @@ impl Merged {
             let [a, b] = [mesh.origin(h), mesh.tip(h)].map(|v| positions[v.at()]);
             norm([0, 1, 2].map(|k| b[k] - a[k]))
         };
-        let mut into: Vec<u32> = (0..mesh.n_vertices() as u32).collect();
+        let mut sets = SignedSets::new(mesh.n_vertices());
         let mut is_any = false;
         for h in mesh.halfedges() {
             let longest = h.face().halfedges().map(length).into_iter().fold(0.0, f64::max);
             if length(h) <= NO_LENGTH * longest {
-                let [a, b] = [mesh.origin(h), mesh.tip(h)].map(|v| root(&into, v.0));
-                into[a.max(b) as usize] = a.min(b);
+                sets.join(mesh.origin(h).0, mesh.tip(h).0, false);
                 is_any = true;
             }
         }
         if !is_any {
             return None;
         }
-        let into: Vec<u32> = (0..into.len() as u32).map(|v| root(&into, v)).collect();
+        let into = sets.into_roots();
         let (mut faces, mut face_origin) = (Vec::new(), Vec::new());
         for f in mesh.faces() {
             let [a, b, c] = mesh.face_vertices(f).map(|v| into[v.at()]);
@@ -68,11 +68,4 @@ impl Merged {
         }
         (EdgeSet::new(&self.mesh, merged), names)
     }
-}
-
-fn root(into: &[u32], mut v: u32) -> u32 {
-    while into[v as usize] != v {
-        v = into[v as usize];
-    }
-    v
 }

@@ -69,35 +69,6 @@ pub fn refine(
     Some(refined)
 }
 
-/// Parts in which features lack room, or faces area.
-fn in_need(
-    parts: &FlatParts,
-    mesh: &TriMesh,
-    positions: &[[f64; 3]],
-    features: &EdgeSet,
-    is_on_curve: &VertexData<bool>,
-) -> Vec<bool> {
-    let joins_curves = |&h: &Halfedge| {
-        let on_curves = [mesh.origin(h), mesh.tip(h)].iter().all(|&v| is_on_curve[v]);
-        on_curves && !features.contains(h)
-    };
-    let needs = |faces: &Vec<Face>| {
-        faces.iter().any(|&f| {
-            let sides = f.halfedges();
-            let n_features = sides.iter().filter(|&&h| features.contains(h)).count();
-            let corners = corners(mesh, positions, f);
-            let is_needle = |&h: &Halfedge| {
-                faces.len() > 1 && is_on_curve[mesh.origin(h)] && angle(corners, h.side()) < NEEDLE
-            };
-            n_features > 1
-                || sides.iter().any(joins_curves)
-                || sides.iter().any(is_needle)
-                || (faces.len() > 1 && !has_area(corners))
-        })
-    };
-    parts.faces.iter().map(needs).collect()
-}
-
 /// Vertices on feature edges.
 fn on_curves(mesh: &TriMesh, features: &EdgeSet) -> VertexData<bool> {
     let mut is_on_curve = VertexData::filled(mesh.n_vertices(), false);
@@ -123,8 +94,34 @@ impl<'a> Source<'a> {
     fn new(mesh: &'a TriMesh, positions: &'a [[f64; 3]], features: &'a EdgeSet) -> Self {
         let parts = FlatParts::new(mesh, positions, |h| features.contains(h));
         let is_on_curve = on_curves(mesh, features);
-        let needs_room = in_need(&parts, mesh, positions, features, &is_on_curve);
-        Self { mesh, positions, features, is_on_curve, parts, needs_room }
+        let mut source =
+            Self { mesh, positions, features, is_on_curve, parts, needs_room: Vec::new() };
+        let parts = source.parts.faces.iter();
+        source.needs_room = parts.map(|faces| source.lacks_room(faces)).collect();
+        source
+    }
+
+    /// Whether features lack room in a part, or faces area.
+    fn lacks_room(&self, part: &[Face]) -> bool {
+        part.iter().any(|&f| {
+            let sides = f.halfedges();
+            let n_features = sides.iter().filter(|&&h| self.features.contains(h)).count();
+            let corners = corners(self.mesh, self.positions, f);
+            let is_needle = |&h: &Halfedge| {
+                let is_on_curve = self.is_on_curve[self.mesh.origin(h)];
+                part.len() > 1 && is_on_curve && angle(corners, h.side()) < NEEDLE
+            };
+            n_features > 1
+                || sides.iter().any(|&h| self.joins_curves(h))
+                || sides.iter().any(is_needle)
+                || (part.len() > 1 && !has_area(corners))
+        })
+    }
+
+    /// Whether an edge has both ends on feature curves, without being a piece of one.
+    fn joins_curves(&self, h: Halfedge) -> bool {
+        let ends = [self.mesh.origin(h), self.mesh.tip(h)];
+        !self.features.contains(h) && ends.iter().all(|&v| self.is_on_curve[v])
     }
 
     fn refined(&self, size: f64) -> Refinement {
@@ -169,9 +166,7 @@ impl<'a> Source<'a> {
             let ends = [self.mesh.origin(h), self.mesh.tip(h)];
             let [a, b] = ends.map(|v| self.positions[v.at()]);
             let length = crate::metric::norm([0, 1, 2].map(|k| b[k] - a[k]));
-            let joins_curves =
-                !self.features.contains(h) && ends.iter().all(|&v| self.is_on_curve[v]);
-            let fewest = if joins_curves { FEWEST_PIECES } else { 1 };
+            let fewest = if self.joins_curves(h) { FEWEST_PIECES } else { 1 };
             let n = ((length / size).ceil().min(MOST_PIECES) as usize).max(fewest);
             let first = positions.len() as u32;
             for k in 1..n {

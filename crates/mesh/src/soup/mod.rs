@@ -20,7 +20,7 @@ mod fault;
 mod geometry;
 mod merge;
 mod repair;
-mod sets;
+pub(crate) mod sets;
 mod sheets;
 mod topology;
 mod triangulate;

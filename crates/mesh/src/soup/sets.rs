@@ -5,13 +5,13 @@
 /// The representative of a set is its smallest member, so results do not depend on the order of
 /// unions.
 #[derive(Debug, Clone)]
-pub(super) struct SignedSets {
+pub(crate) struct SignedSets {
     parent: Vec<u32>,
     odd: Vec<bool>,
 }
 
 impl SignedSets {
-    pub(super) fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect(), odd: vec![false; n] }
     }
 
@@ -35,13 +35,13 @@ impl SignedSets {
     }
 
     /// For each member the smallest member of its set.
-    pub(super) fn into_roots(mut self) -> Vec<u32> {
+    pub(crate) fn into_roots(mut self) -> Vec<u32> {
         (0..self.parent.len() as u32).map(|x| self.find(x).0).collect()
     }
 
     /// Joins the sets of `a` and `b`, whose signs differ if `odd`. False if they are in one set
     /// already and their signs say otherwise.
-    pub(super) fn join(&mut self, a: u32, b: u32, odd: bool) -> bool {
+    pub(crate) fn join(&mut self, a: u32, b: u32, odd: bool) -> bool {
         let (root_a, odd_a) = self.find(a);
         let (root_b, odd_b) = self.find(b);
         let between = odd ^ odd_a ^ odd_b;
