@@ -7,7 +7,7 @@ use crate::commands::{
     ManArgs, MapArgs, MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs,
 };
 use crate::failure::{Failure, Status};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -107,12 +107,6 @@ const RESEARCH: [&str; 18] = [
 ];
 /// Options that few users of `map`, `quad` and `integer` need.
 const RARE: [&str; 6] = ["corner_angle", "cone_price", "angle", "shift", "period", "format"];
-
-/// Parses the command line, or prints help or what is wrong with it and ends.
-pub(crate) fn parse() -> CommandLine {
-    let matches = definition().get_matches();
-    CommandLine::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
-}
 
 /// The command line, with its rarer options hidden.
 pub(crate) fn definition() -> clap::Command {

@@ -3,7 +3,6 @@
 use crate::text::{self, as_options};
 use seamstress::{Error, ErrorCategory, ErrorKind};
 use std::fmt;
-use std::process::ExitCode;
 use std::time::Duration;
 
 /// The exit codes, as documented in the help.
@@ -14,12 +13,6 @@ pub(crate) enum Status {
     WrongUsage = 2,
     NoResult = 3,
     Stopped = 4,
-}
-
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
-        ExitCode::from(status as u8)
-    }
 }
 
 /// Why a run failed: what, where, and what to do about it.

@@ -67,6 +67,22 @@ impl Output {
         );
         Err(Error::new(ErrorKind::Unwritable, text).at_stage(Some(Stage::Files)))
     }
+
+    /// Writes a file of the format that its name says, which appears only when it is complete.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`].
+    pub fn write(
+        self,
+        path: &Path,
+        content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+    ) -> Result<(), Error> {
+        self.check_name(path)?;
+        let mut file = AtomicFile::create(path)?;
+        let written = content(&mut file).and_then(|()| file.flush());
+        written.map_err(|cause| Error::new(ErrorKind::Unwritable, cause.to_string()))?;
+        Ok(file.commit()?)
+    }
 }
 
 /// "A, B or C".
@@ -82,17 +98,4 @@ fn alternatives(words: impl Iterator<Item = String>) -> String {
 /// Reads a mesh as one of a format, that of its name if none is given.
 pub(crate) fn read_mesh(path: &Path, format: Option<MeshFormat>) -> Result<PolygonMesh, Error> {
     Ok(seamstress_io::read_mesh_as(path, format.map(Format::from))?)
-}
-
-/// Writes a file of the format that its name says, which appears only when it is complete.
-pub(crate) fn write(
-    path: &Path,
-    output: Output,
-    content: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
-) -> Result<(), Error> {
-    output.check_name(path)?;
-    let mut file = AtomicFile::create(path)?;
-    let written = content(&mut file).and_then(|()| file.flush());
-    written.map_err(|cause| Error::new(ErrorKind::Unwritable, cause.to_string()))?;
-    Ok(file.commit()?)
 }

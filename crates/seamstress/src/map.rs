@@ -181,7 +181,7 @@ impl<R: Described> SeamlessMap<R> {
     /// # Errors
     /// [`ErrorKind::Unwritable`].
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        crate::files::write(path.as_ref(), crate::files::Output::Map, |file| self.write_to(file))
+        crate::files::Output::Map.write(path.as_ref(), |file| self.write_to(file))
     }
 
     /// Writes it as OBJ.

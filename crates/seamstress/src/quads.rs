@@ -262,7 +262,7 @@ impl QuadMesh {
     #[cfg(feature = "io")]
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        crate::files::write(path, crate::files::Output::Quads, |file| self.write_as(path, file))
+        crate::files::Output::Quads.write(path, |file| self.write_as(path, file))
     }
 
     /// Writes it in the format that a file of this name has: OBJ, OFF, PLY or STL. OBJ if it says none.

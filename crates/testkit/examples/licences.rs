@@ -7,6 +7,7 @@
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::error::Error;
+use std::ffi::OsStr;
 use std::process::Command;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -15,17 +16,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let table = std::fs::read_to_string(format!("{root}/ARCHITECTURE.md"))?;
     let allowed = allowed(&rules).ok_or("deny.toml has no list of allowed licences")?;
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let metadata = Command::new(cargo)
-        .args(["metadata", "--locked", "--all-features", "--format-version", "1"])
-        .current_dir(root)
-        .output()?;
-    if !metadata.status.success() {
-        return Err(String::from_utf8_lossy(&metadata.stderr).into());
-    }
-    let metadata: Value = serde_json::from_slice(&metadata.stdout)?;
-    let packages = metadata["packages"].as_array().ok_or("no packages")?;
     let (mut faults, mut foreign) = (Vec::new(), 0);
-    for package in packages {
+    // The Python package is outside the workspace, with a lock file of its own.
+    let of_python = format!("{root}/crates/python");
+    let packages = [packages(&cargo, root)?, packages(&cargo, &of_python)?].concat();
+    for package in &packages {
         let name = package["name"].as_str().unwrap_or_default();
         if package["source"].is_null() {
             faults.extend(unlisted(package, &table).into_iter().map(|dependency| {
@@ -44,6 +39,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("{foreign} dependencies may be had under {}", allowed.join(", "));
     Ok(())
+}
+
+/// The packages that a workspace is made of and depends on.
+fn packages(cargo: &OsStr, folder: &str) -> Result<Vec<Value>, Box<dyn Error>> {
+    let metadata = Command::new(cargo)
+        .args(["metadata", "--locked", "--all-features", "--format-version", "1"])
+        .current_dir(folder)
+        .output()?;
+    if !metadata.status.success() {
+        return Err(String::from_utf8_lossy(&metadata.stderr).into());
+    }
+    let metadata: Value = serde_json::from_slice(&metadata.stdout)?;
+    Ok(metadata["packages"].as_array().ok_or("no packages")?.clone())
 }
 
 /// The strings of `allow = [...]` under `[licenses]`.

@@ -10,9 +10,11 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const OURS: [&str; 2] = ["seamstress ", "cargo run --release -p seamstress-cli -- "];
 
 /// Other commands that documents may show.
-const OTHERS: [&str; 7] = [
+const OTHERS: [&str; 9] = [
     "cargo ",
     "git ",
+    "pip ",
+    "python ",
     "INSTA_UPDATE=",
     "target/release/",
     ".ci/",
