@@ -130,11 +130,23 @@ const SHOWN_WARNINGS: usize = 5;
 /// Repairs that are shown; the report has them all.
 const SHOWN_REPAIRS: usize = 20;
 
-/// Plans, works, writes, and prints the report or the summary.
+/// Plans, works, writes, and prints the report or the summary. Where reports are printed as JSON, a failure is one.
 pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
+    let job = Job::new(command.run_args());
+    let plan = command.plan();
+    let has_output = plan.as_ref().is_ok_and(Plan::writes_to_standard_output);
+    let ended = plan.and_then(|plan| work(command, &job, &plan));
+    if let (Err(failure), true) = (&ended, command.run_args().json && !has_output) {
+        let version = seamstress::VERSION;
+        let report =
+            json!({ "seamstress": version, "command": C::NAME, "error": failure.report() });
+        print(&serde_json::to_string_pretty(&report).unwrap_or_default())?;
+    }
+    ended
+}
+
+fn work<C: Command>(command: &C, job: &Job, plan: &Plan) -> Result<Status, Failure> {
     let run = command.run_args();
-    let job = Job::new(run);
-    let plan = command.plan()?;
     if run.json && plan.writes_to_standard_output() {
         let text = "`--json` prints the report on standard output; write the result to a file";
         return Err(Failure::Usage(text.into()));
@@ -151,7 +163,7 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     let drawing = (!pictures.is_empty()).then_some(("pictures", drawing));
     let mut pictures = pictures.into_iter();
     let cost = job.cost();
-    let report = report_text(command, &product, &plan, cost);
+    let report = report_text(command, &product, plan, cost);
     let mut batch = plan.begin()?;
     for target in &plan.targets {
         let picture = match target.kind {
@@ -173,7 +185,7 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     match (run.json, run.quiet || plan.writes_to_standard_output()) {
         (true, _) => print(&report)?,
         (false, true) => {}
-        (false, false) => print(&summary_text(command, &product, &plan, &cost, drawing))?,
+        (false, false) => print(&summary_text(command, &product, plan, &cost, drawing))?,
     }
     Ok(command.status(&product))
 }

@@ -2,6 +2,7 @@
 
 use crate::text::{self, as_options};
 use seamstress::{Error, ErrorCategory, ErrorKind};
+use serde_json::{Value, json};
 use std::fmt;
 use std::time::Duration;
 
@@ -58,6 +59,29 @@ impl Failure {
             Self::Interrupted { .. } | Self::TimeLimit { .. } => Status::Stopped,
             Self::Panicked { .. } => Status::NoResult,
         }
+    }
+}
+
+impl Failure {
+    /// For programs: a stable code, and what the library knows of it.
+    pub(crate) fn report(&self) -> Value {
+        let code = match self {
+            Self::Library(error) => error.code(),
+            Self::Usage(_) => "usage",
+            Self::StandardInput(_) => ErrorKind::Unreadable.code(),
+            Self::Interrupted { .. } => ErrorKind::Cancelled.code(),
+            Self::TimeLimit { .. } => ErrorKind::TimeLimit.code(),
+            Self::Panicked { .. } => ErrorKind::Internal.code(),
+        };
+        let mut report = json!({ "code": code, "message": self.to_string() });
+        if let Self::Library(error) = self {
+            report["message"] = error.message().into();
+            report["stage"] = json!(error.stage());
+            report["hint"] = json!(error.hint().map(as_options));
+            report["elements"] = json!(error.elements());
+            report["findings"] = json!(error.findings());
+        }
+        report
     }
 }
 

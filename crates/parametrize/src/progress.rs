@@ -26,6 +26,10 @@ pub enum Stage {
     Certificate,
     /// Rounding to an integer map.
     Integers,
+    /// Extracting quads.
+    Extraction,
+    /// Untangling and smoothing quads.
+    Shaping,
 }
 
 impl Stage {
@@ -40,6 +44,8 @@ impl Stage {
             Stage::Objective => "objective",
             Stage::Certificate => "certificate",
             Stage::Integers => "integers",
+            Stage::Extraction => "extraction",
+            Stage::Shaping => "shaping",
         }
     }
 }
@@ -104,6 +110,11 @@ pub(crate) fn unless_cancelled<T, E: MaybeCancelled>(
 
 /// A caller's view of running work: called in every iteration of every long loop.
 pub type Observer<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// The observer of those who want to know nothing.
+pub fn go_on(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
 
 /// Reports progress of one component to an observer.
 pub struct Watch<'a, 'b> {

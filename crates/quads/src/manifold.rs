@@ -10,6 +10,7 @@ use seamstress_parametrize::progress::Observer;
 use seamstress_quantize::{
     Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, quantize_accepting,
 };
+use std::cell::RefCell;
 
 /// An integer-grid map and its quads, an oriented manifold.
 #[derive(Debug)]
@@ -61,11 +62,15 @@ pub fn manifold_quads(
     observer: &mut Observer<'_>,
 ) -> Result<ManifoldQuads, ManifoldError> {
     let settings = ExtractOptions::default();
+    // Rounding and the looks at its quads take turns.
+    let observer = RefCell::new(observer);
+    let observe = |progress| (observer.borrow_mut())(progress);
     let mut refused = None;
     let mut is_manifold = |piece: &Component, uvs: &[[f64; 2]]| {
         let positions = piece.positions(positions);
-        // A small piece may have no whole cell; whether the mesh has any is found in the end.
-        let Ok(extraction) = extract(&piece.mesh, &positions, uvs, &settings) else { return true };
+        // A small piece may have no whole cell; whether the mesh has any is found in the end. So is a wish to stop.
+        let made = extract(&piece.mesh, &positions, uvs, &settings, &mut { observe });
+        let Ok(extraction) = made else { return true };
         let faults = extraction.mesh.connectivity().err();
         refused = faults.map(|faults| {
             let faces = faulty_faces(&extraction, &faults);
@@ -74,8 +79,9 @@ pub fn manifold_quads(
         });
         refused.is_none()
     };
-    let made =
-        quantize_accepting(mesh, positions, map, aligned, options, &mut is_manifold, observer);
+    let made = quantize_accepting(mesh, positions, map, aligned, options, &mut is_manifold, &mut {
+        observe
+    });
     let quantization = made.map_err(|cause| match (cause, refused) {
         (
             QuantizeError::Component { cause: QuantizationFailure::Refused, .. },
@@ -83,7 +89,8 @@ pub fn manifold_quads(
         ) => no_manifold,
         (cause, _) => cause.into(),
     })?;
-    let extraction = extract(mesh, positions, quantization.map.corner_uvs(), &settings)?;
+    let extraction =
+        extract(mesh, positions, quantization.map.corner_uvs(), &settings, &mut { observe })?;
     let connectivity = extraction.mesh.connectivity().map_err(|faults| {
         let faces = faulty_faces(&extraction, &faults);
         ManifoldError::NoManifold { faults, faces }

@@ -7,6 +7,7 @@ use crate::vector::{Point, add};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_parallel::prelude::*;
+use seamstress_parametrize::progress::{Cancelled, Observer, Stage, Watch};
 
 /// How to smooth.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +28,9 @@ impl Default for SmoothOptions {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The quads are no oriented manifold.
     #[error("the quads are no manifold: {0}")]
     NoManifold(#[from] QuadFaults),
@@ -63,12 +67,15 @@ const FAIR: Fair = Fair { corner: 0.0, thinness: f64::INFINITY };
 /// vertices: the result does not depend on the number of threads.
 ///
 /// # Errors
-/// If the quads are no manifold or the surface has no triangle.
+/// If the quads are no manifold or the surface has no triangle, and where the observer breaks.
 pub fn smooth(
     mesh: &QuadMesh,
     surface: (&[Point], &[[u32; 3]]),
     options: &SmoothOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Smoothed, SmoothError> {
+    let mut watch = Watch::new(observer, 0, 1);
+    watch.enter(Stage::Shaping)?;
     let connectivity = mesh.connectivity()?;
     let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
     let positions = mesh.positions().to_vec();
@@ -77,7 +84,8 @@ pub fn smooth(
     let normals = positions.par_iter().map(|&p| domain.normal(p)).collect();
     let mut moves = Moves::new(&connectivity, mesh.quads(), positions, normals);
     let mut refused = 0;
-    for _ in 0..options.rounds {
+    for round in 0..options.rounds {
+        watch.tick(f64::from(round) / f64::from(options.rounds))?;
         let on_surface = |&v: &u32| domain.place(v, target(&connectivity, &moves.positions, v));
         let targets: Vec<(Point, Point)> = movable.par_iter().map(on_surface).collect();
         refused =
@@ -103,6 +111,7 @@ mod tests {
     use crate::badness;
     use crate::quality::Orientation;
     use crate::vector::{dot, sub};
+    use seamstress_parametrize::progress::go_on;
     use seamstress_testkit::{Rng, cube, disk_grid};
 
     fn quads_of(faces: &[[u32; 3]]) -> Vec<[u32; 4]> {
@@ -120,7 +129,8 @@ mod tests {
         }
         let before = QuadMesh::new(disturbed.clone(), quads_of(&grid.faces)).unwrap();
         let options = SmoothOptions { rounds: 100, ..SmoothOptions::default() };
-        let smoothed = smooth(&before, (&grid.positions, &grid.faces), &options).unwrap();
+        let smoothed =
+            smooth(&before, (&grid.positions, &grid.faces), &options, &mut go_on).unwrap();
         let distance = |points: &[Point]| {
             let pairs = points.iter().zip(&grid.positions);
             pairs.map(|(&a, &b)| dot(sub(a, b), sub(a, b)).sqrt()).fold(0.0, f64::max)
@@ -154,7 +164,7 @@ mod tests {
             let mut mesh = QuadMesh::new(disturbed, quads_of(&grid.faces)).unwrap();
             for _ in 0..20 {
                 let options = SmoothOptions { rounds: 1, ..SmoothOptions::default() };
-                let next = smooth(&mesh, surface, &options).unwrap().mesh;
+                let next = smooth(&mesh, surface, &options, &mut go_on).unwrap().mesh;
                 assert!(faults(&next) <= faults(&mesh), "{seed}");
                 mesh = next;
             }
@@ -170,7 +180,8 @@ mod tests {
         let fixed = mesh.quads().iter().flat_map(|q| [q[0], q[2]]).collect();
         let constraints = Constraints { fixed, ..Constraints::default() };
         let options = SmoothOptions { rounds: 3, constraints };
-        let smoothed = smooth(&mesh, (&shape.positions, &shape.faces), &options).unwrap();
+        let smoothed =
+            smooth(&mesh, (&shape.positions, &shape.faces), &options, &mut go_on).unwrap();
         for &v in &options.constraints.fixed {
             assert_eq!(smoothed.mesh.positions()[v as usize], mesh.positions()[v as usize]);
         }
@@ -181,10 +192,11 @@ mod tests {
         let bow = QuadMesh::new(vec![[0.0; 3]; 7], vec![[0, 1, 2, 3], [2, 4, 5, 6]]).unwrap();
         let shape = cube();
         let surface = (&shape.positions[..], &shape.faces[..]);
-        let error = smooth(&bow, surface, &SmoothOptions::default()).unwrap_err();
+        let error = smooth(&bow, surface, &SmoothOptions::default(), &mut go_on).unwrap_err();
         assert!(matches!(error, SmoothError::NoManifold(_)), "{error}");
         let mesh = QuadMesh::new(shape.positions.clone(), quads_of(&shape.faces)).unwrap();
-        let error = smooth(&mesh, (&shape.positions, &[]), &SmoothOptions::default()).unwrap_err();
+        let error = smooth(&mesh, (&shape.positions, &[]), &SmoothOptions::default(), &mut go_on)
+            .unwrap_err();
         assert!(matches!(error, SmoothError::BadSurface(_)), "{error}");
     }
 }

@@ -14,6 +14,7 @@ use crate::{QuadConnectivity, QuadMesh};
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
 use seamstress_parallel::prelude::*;
+use seamstress_parametrize::progress::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The longest step, in mean edges of a stretch: quads half as high as wide are slanted by eleven degrees until their
@@ -39,12 +40,13 @@ const EVEN: f64 = 2.0;
 /// corner is no worse or within 30 degrees of a right angle. Moves are made one by one in the order of the vertices.
 ///
 /// # Errors
-/// If there is no memory to solve for the moves.
+/// If there is no memory to solve for the moves, and where the observer breaks.
 pub(crate) fn evenly_spaced(
     mesh: &QuadMesh,
     connectivity: &QuadConnectivity,
     domain: &Domain,
     stretches: &[Stretch<'_>],
+    watch: &mut Watch<'_, '_>,
 ) -> Result<Vec<Point>, SmoothError> {
     let positions = mesh.positions();
     let sliders: Vec<Slider<'_>> = stretches.iter().flat_map(sliders).collect();
@@ -57,6 +59,7 @@ pub(crate) fn evenly_spaced(
     let farthest = sliders.iter().map(|slider| slider.way(positions).abs() / slider.edge);
     let steps = (farthest.fold(0.0, f64::max) / STEP).ceil().min(STEPS as f64) as usize;
     for left in (1..=steps).rev() {
+        watch.pulse()?;
         let at = |slider: &Slider| slider.after(&moves.positions, 1.0 / left as f64);
         let on_curves: Vec<Point> = sliders.par_iter().map(at).collect();
         let steps: Vec<Point> = sliders

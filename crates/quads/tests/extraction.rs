@@ -5,19 +5,21 @@ use proptest::prelude::*;
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::features::sharp_edges;
 use seamstress_parallel::with_threads;
+use seamstress_parametrize::progress::{Cancelled, Progress, go_on};
 use seamstress_quads::extract::MapFault;
 use seamstress_quads::{ExtractError, ExtractOptions, Extraction, QuadConnectivity, extract};
 use seamstress_testkit::{
     IntegerMap, annulus, cube, cylinder, disk_grid, l_bracket, random_voxels, slab_with_holes,
     squares, torus,
 };
+use std::ops::ControlFlow;
 
 fn mesh_of(map: &IntegerMap) -> TriMesh {
     TriMesh::from_faces(map.soup.positions.len(), &map.soup.faces).unwrap()
 }
 
 fn try_extract(map: &IntegerMap, options: &ExtractOptions) -> Result<Extraction, ExtractError> {
-    extract(&mesh_of(map), &map.soup.positions, &map.corner_uvs, options)
+    extract(&mesh_of(map), &map.soup.positions, &map.corner_uvs, options, &mut go_on)
 }
 
 fn extracted(map: &IntegerMap) -> Extraction {
@@ -83,6 +85,28 @@ fn expected_rings(map: &IntegerMap, n: u32) -> Vec<[[i64; 3]; 4]> {
         }
     }
     rings(quads.into_iter(), f64::from(n))
+}
+
+#[test]
+fn it_stops_when_the_observer_breaks() {
+    let map = squares(&torus(6, 6, 2.0, 0.7), 1);
+    let mut seen = Vec::new();
+    for calls in 0..7 {
+        let mut left = calls;
+        let mut observer = |progress: Progress| {
+            seen.push(progress.fraction);
+            left -= 1;
+            if left < 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let options = ExtractOptions::default();
+        let (positions, uvs) = (&map.soup.positions, &map.corner_uvs);
+        let found = extract(&mesh_of(&map), positions, uvs, &options, &mut observer);
+        match calls {
+            6 => assert!(found.is_ok()),
+            _ => assert_eq!(found, Err(ExtractError::Cancelled(Cancelled)), "{calls}"),
+        }
+    }
+    assert_eq!(seen[seen.len() - 6..], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]);
 }
 
 #[test]

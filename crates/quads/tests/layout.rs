@@ -4,6 +4,7 @@
 use num_complex::Complex64;
 use proptest::prelude::*;
 use seamstress_mesh::Metric;
+use seamstress_parametrize::progress::go_on;
 use seamstress_parametrize::quality::distortion;
 use seamstress_parametrize::{SeamlessMap, Tolerance};
 use seamstress_quads::layout::{LayoutError, QuadLayout, lay_out_conformal, lay_out_squares};
@@ -85,7 +86,7 @@ proptest! {
         prop_assert_eq!(quads.quads().len(), layout.corner_uvs.len() / 6);
         // The map is an integer map, and its quads are the quads it came from.
         let options = ExtractOptions::default();
-        let found = extract(&layout.mesh, quads.positions(), &layout.corner_uvs, &options).unwrap();
+        let found = extract(&layout.mesh, quads.positions(), &layout.corner_uvs, &options, &mut go_on).unwrap();
         let ring = |quad: &[u32; 4], positions: &[[f64; 3]]| {
             let corners = quad.map(|v| positions[v as usize].map(f64::to_bits));
             // Vertices may share a place: the least of all turns, not a least corner.

@@ -154,7 +154,7 @@ impl Watcher {
         let progress = Progress { stage, component: 0, n_components: 1, fraction: 0.0 };
         match self.see(progress) {
             ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(Error::new(ErrorKind::Cancelled, "stopped on request")),
+            ControlFlow::Break(()) => Err(Error::cancelled()),
         }
     }
 

@@ -74,6 +74,8 @@ impl From<Step> for Stage {
             Step::Polish => Self::Polish,
             Step::Objective => Self::Objective,
             Step::Integers => Self::Quantization,
+            Step::Extraction => Self::Extraction,
+            Step::Shaping => Self::Shaping,
             _ => Self::Certificate,
         }
     }
@@ -217,6 +219,11 @@ impl Error {
 
     pub(crate) fn options(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Options, message)
+    }
+
+    /// Work that was stopped: by the caller, or by what the watcher over it knows.
+    pub(crate) fn cancelled() -> Self {
+        Self::new(ErrorKind::Cancelled, "stopped on request")
     }
 
     /// Names the input, unless it has a name already.

@@ -242,7 +242,7 @@ impl Surface {
     /// Why a map could not be rounded, with the elements that it names.
     pub(crate) fn no_integer_map(&self, cause: &QuantizeError, rounding: GridRounding) -> Error {
         if matches!(cause, QuantizeError::Cancelled(_)) {
-            return Error::new(ErrorKind::Cancelled, "stopped on request");
+            return Error::cancelled();
         }
         let text = format!("no certified integer-grid map could be made: {cause}");
         let error = Error::new(ErrorKind::NoIntegerMap, text).with_hint(hint(rounding));

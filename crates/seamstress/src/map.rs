@@ -308,7 +308,7 @@ impl Surface {
     pub(crate) fn no_map(&self, cause: &MapError) -> Error {
         let elements = |elements: Elements| self.in_input(&elements);
         match cause {
-            MapError::Cancelled(_) => Error::new(ErrorKind::Cancelled, "stopped on request"),
+            MapError::Cancelled(_) => Error::cancelled(),
             MapError::Released { released } => {
                 let edges = released.iter().map(|feature| feature.vertices).collect();
                 let found = Elements { edges, ..Elements::default() };

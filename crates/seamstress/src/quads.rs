@@ -1,5 +1,6 @@
 //! Quad meshes.
 
+use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{FeatureReport, Features};
 use crate::finding::Elements;
@@ -11,11 +12,12 @@ use crate::surface::Surface;
 #[cfg(feature = "io")]
 use crate::words::counted;
 use seamstress_mesh::Face;
+use seamstress_parametrize::progress::go_on;
 use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
-    QuadConnectivity, QuadFaults, SmoothOptions, UntangleOptions, manifold_quads,
+    QuadConnectivity, QuadFaults, SmoothError, SmoothOptions, UntangleOptions, manifold_quads,
 };
 use seamstress_quantize::{IntegerCertificate, QuantizationStats};
 use serde::Serialize;
@@ -309,10 +311,9 @@ impl Surface {
             let (mesh, positions, map) = (surface.mesh(), surface.positions(), &start.map);
             let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
                 .map_err(|cause| surface.no_manifold(cause, &integer))?;
-            watcher.enter(Stage::Shaping)?;
             let kept = start.features.as_ref().map_or(&[][..], |features| &features.kept);
             let mut extraction = made.extraction;
-            let shaped = surface.shape(&mut extraction, &options.shape, kept)?;
+            let shaped = surface.shape(&mut extraction, &options.shape, kept, watcher)?;
             work.bring_back(&mut extraction)?;
             let map = ExtractedMap::new(&extraction);
             let solution = made.quantization;
@@ -352,10 +353,11 @@ impl Surface {
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let made = self.context().run(|watcher| {
             let asked = self.features(features)?;
-            watcher.enter(Stage::Extraction)?;
             let settings =
                 ExtractOptions { tolerance: options.tolerance, best_effort: options.best_effort };
-            let extracted = quads::extract(self.mesh(), self.positions(), &corner_uvs, &settings);
+            let mut observe = |progress| watcher.observe(progress);
+            let (mesh, positions) = (self.mesh(), self.positions());
+            let extracted = quads::extract(mesh, positions, &corner_uvs, &settings, &mut observe);
             let mut extraction =
                 extracted.map_err(|cause| self.no_quads(&cause, options.tolerance))?;
             let connectivity = extraction.mesh.connectivity();
@@ -368,7 +370,7 @@ impl Surface {
             let (kept, feature_report) = asked.followed_by(&extraction);
             // What folds have left holes in is no surface to shape.
             let shaped = match connectivity.is_ok() && extraction.folds.is_none() {
-                true => Some(self.shape(&mut extraction, &options.shape, &kept)?),
+                true => Some(self.shape(&mut extraction, &options.shape, &kept, watcher)?),
                 false => None,
             };
             let quads = QuadReport::new(self, &extraction, connectivity.as_ref());
@@ -400,7 +402,7 @@ impl Surface {
             return Vec::new();
         }
         let settings = ExtractOptions::default();
-        match quads::extract(self.mesh(), self.positions(), corner_uvs, &settings) {
+        match quads::extract(self.mesh(), self.positions(), corner_uvs, &settings, &mut go_on) {
             Ok(extraction) => self.components_without(&extraction.sources),
             Err(ExtractError::NoQuads { .. }) => self.components_without(&[]),
             // Too many cells for extraction: nothing is known of them.
@@ -427,26 +429,33 @@ impl Surface {
         extraction: &mut Extraction,
         options: &ShapeOptions,
         features: &[[u32; 2]],
+        watcher: &mut Watcher,
     ) -> Result<(Untangled, Orientation), Error> {
+        watcher.enter(Stage::Shaping)?;
         let constraints = extraction.constraints(self.mesh(), self.positions(), features);
         let surface = (self.positions(), self.faces());
         let failure = |cause: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {cause}"))
                 .at_stage(Some(Stage::Shaping))
         };
+        let not_shaped = |cause: SmoothError| match cause {
+            SmoothError::Cancelled(_) => Error::cancelled(),
+            cause => failure(&cause),
+        };
+        let mut observe = |progress| watcher.observe(progress);
         let mut untangled = Untangled { moved: 0, largest_move: 0.0 };
         if !options.raw {
             let settings =
                 UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
-            let shaped = quads::untangle(&extraction.mesh, surface, &settings)
-                .map_err(|cause| failure(&cause))?;
+            let shaped = quads::untangle(&extraction.mesh, surface, &settings, &mut observe)
+                .map_err(not_shaped)?;
             untangled = Untangled { moved: shaped.moved, largest_move: shaped.largest_move };
             extraction.mesh = shaped.mesh;
         }
         if options.smooth > 0 {
             let settings = SmoothOptions { rounds: options.smooth, constraints };
-            let smoothed = quads::smooth(&extraction.mesh, surface, &settings);
-            extraction.mesh = smoothed.map_err(|cause| failure(&cause))?.mesh;
+            let smoothed = quads::smooth(&extraction.mesh, surface, &settings, &mut observe);
+            extraction.mesh = smoothed.map_err(not_shaped)?.mesh;
         }
         let polygons = extraction.mesh.quads().iter().map(<[u32; 4]>::as_slice);
         let orientation = Orientation::new(extraction.mesh.positions(), polygons, surface)
@@ -458,6 +467,7 @@ impl Surface {
     fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
         match cause {
             ManifoldError::Quantize(cause) => self.no_integer_map(&cause, options.rounding),
+            ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),
             ManifoldError::NoManifold { faults, faces } => no_manifold_of(&faults)
                 .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
                 .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
@@ -478,6 +488,7 @@ impl Surface {
             Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {text}"))
         };
         match cause {
+            ExtractError::Cancelled(_) => Error::cancelled(),
             ExtractError::NotInteger(faults) => {
                 let lines = crate::finding::listing_of(&faults.0, LISTED).join("\n  ");
                 let text =

@@ -106,6 +106,31 @@ fn outputs_that_cannot_be_written_are_2_and_found_first() {
 }
 
 #[test]
+fn failures_are_json_where_reports_are() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\n");
+    let cases: [(i32, &[&str], &str); 4] = [
+        (1, &["none.obj", "-o", "a.obj"], "unreadable"),
+        (1, &["bad.obj", "-o", "a.obj"], "not-a-surface"),
+        (2, &["in.obj", "-o", "in.obj"], "usage"),
+        (4, &["in.obj", "-o", "a.obj", "--time-limit", "0.01"], "time-limit"),
+    ];
+    for (code, arguments, name) in cases {
+        let run = folder.expect(code, &[&["map", "--json"], arguments].concat());
+        assert!(run.stderr.starts_with("error: "), "{run:?}");
+        let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!(report["command"], "map");
+        assert_eq!(report["error"]["code"], name, "{report}");
+        assert!(!report["error"]["message"].as_str().unwrap().is_empty());
+        if name == "not-a-surface" {
+            assert_eq!(report["error"]["stage"], "check");
+            assert_eq!(report["error"]["findings"][0]["severity"], "error");
+        }
+    }
+}
+
+#[test]
 fn the_time_limit_is_4_and_leaves_nothing() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));

@@ -1,5 +1,6 @@
 //! What keeps a map from giving quads.
 
+use seamstress_parametrize::progress::Cancelled;
 use std::fmt;
 
 /// One reason why UVs are no integer map, naming its element (ids from 0).
@@ -79,6 +80,9 @@ impl fmt::Display for MapFaults {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExtractError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The numbers of positions or UVs do not fit the mesh.
     #[error("{found} {what} for a mesh that needs {expected}")]
     WrongCount {

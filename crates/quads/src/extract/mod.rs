@@ -29,6 +29,7 @@ use patches::Patches;
 use pieces::Pieces;
 use points::{GridPoints, Site};
 use seamstress_mesh::{Face, Halfedge, TriMesh};
+use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use snap::{GridMap, snap};
 
 /// How to extract.
@@ -111,7 +112,7 @@ pub struct Folds {
 ///
 /// # Errors
 /// Maps that are not integral to within the tolerance, and maps that fold unless
-/// [`ExtractOptions::best_effort`]; see [`ExtractError`].
+/// [`ExtractOptions::best_effort`]; see [`ExtractError`]. It stops where the observer breaks.
 ///
 /// # Source
 /// The problem is that of Ebke, Bommes, Campen and Kobbelt 2013, *QEx*; the method is another.
@@ -120,7 +121,10 @@ pub fn extract(
     positions: &[[f64; 3]],
     corner_uvs: &[[f64; 2]],
     options: &ExtractOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Extraction, ExtractError> {
+    let mut watch = Watch::new(observer, 0, 1);
+    watch.enter(Stage::Extraction)?;
     let (expected, found) = (mesh.n_vertices(), positions.len());
     if expected != found {
         return Err(ExtractError::WrongCount { what: "positions", expected, found });
@@ -131,10 +135,15 @@ pub fn extract(
     if has_folds && !options.best_effort {
         return Err(ExtractError::Folds { flipped, collapsed });
     }
+    watch.tick(0.2)?;
     let pieces = Pieces::new(mesh, &map)?;
+    watch.tick(0.4)?;
     let points = GridPoints::new(mesh, &map);
+    watch.tick(0.6)?;
     let patches = Patches::new(mesh, &map, &pieces);
+    watch.tick(0.8)?;
     let quads = assemble(mesh, &map, &pieces, &points, &patches, has_folds);
+    watch.tick(1.0)?;
     if quads.quads.is_empty() {
         return Err(ExtractError::NoQuads { partial: quads.trimmed });
     }

@@ -24,6 +24,7 @@ use descent::untangled;
 use patch::{CurveEdge, Patch};
 use score::worst_corner;
 use seamstress_parallel::prelude::*;
+use seamstress_parametrize::progress::{Cancelled, Observer, Stage, Watch};
 
 /// What to untangle.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +92,7 @@ const SWEEPS: usize = 6;
 /// Patches are improved one by one in the order of the quads: the result does not depend on the number of threads.
 ///
 /// # Errors
-/// If the quads are no manifold or the surface has no triangle.
+/// If the quads are no manifold or the surface has no triangle, and where the observer breaks.
 ///
 /// # Source
 /// The barrier is that of Garanzha, Kaporin, Kudryavtseva, Protais, Ray and Sokolov 2021, *Foldover-free maps in 50
@@ -100,8 +101,9 @@ pub fn untangle(
     mesh: &QuadMesh,
     surface: (&[Point], &[[u32; 3]]),
     options: &UntangleOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Untangling, SmoothError> {
-    untangle_within(mesh, surface, options, &REACHES)
+    untangle_within(mesh, surface, options, &REACHES, observer)
 }
 
 fn untangle_within(
@@ -109,14 +111,17 @@ fn untangle_within(
     surface: (&[Point], &[[u32; 3]]),
     options: &UntangleOptions,
     reaches: &[Reach],
+    observer: &mut Observer<'_>,
 ) -> Result<Untangling, SmoothError> {
+    let mut watch = Watch::new(observer, 0, 1);
+    watch.enter(Stage::Shaping)?;
     let connectivity = mesh.connectivity()?;
     let surface = Surface::new(surface.0, surface.1).map_err(SmoothError::BadSurface)?;
     let given = mesh.positions();
     let domain = Domain::new(surface, &connectivity, given.len(), &options.constraints);
     let curves = curves(&options.constraints);
     let stretches = stretches(&curves, &domain, &connectivity, given);
-    let homes = evenly_spaced(mesh, &connectivity, &domain, &stretches)?;
+    let homes = evenly_spaced(mesh, &connectivity, &domain, &stretches, &mut watch)?;
     let site = |&at: &Point| Site { at, normal: domain.normal(at) };
     let mut state = State {
         connectivity: &connectivity,
@@ -128,9 +133,13 @@ fn untangle_within(
         curve_edges: patch::curve_edges(&stretches, homes.len()),
     };
     let deviation = options.deviation.to_radians().sin();
-    for _ in 0..SWEEPS {
+    for sweep in 0..SWEEPS {
+        watch.tick(sweep as f64 / SWEEPS as f64)?;
         let bound = |reach: &Reach| if reach.for_angles { deviation } else { STRAIGHT };
-        let improved: usize = reaches.iter().map(|reach| state.sweep(reach, bound(reach))).sum();
+        let mut improved = 0;
+        for reach in reaches {
+            improved += state.sweep(reach, bound(reach), &mut watch)?;
+        }
         if improved == 0 {
             break;
         }
@@ -167,12 +176,21 @@ struct State<'a> {
 
 impl State<'_> {
     /// Improves the patches around all quads worse than a bound; says how many of them became better.
-    fn sweep(&mut self, reach: &Reach, bound: f64) -> usize {
+    ///
+    /// # Errors
+    /// Where the observer breaks.
+    fn sweep(
+        &mut self,
+        reach: &Reach,
+        bound: f64,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<usize, Cancelled> {
         let is_bad = |state: &Self, q: u32| worst_corner(state.corners(q)) > bound;
         let quads: Vec<u32> = (0..self.quads.len() as u32).collect();
         let bad: Vec<u32> = quads.into_par_iter().filter(|&q| is_bad(self, q)).collect();
         let mut improved = 0;
         for q in bad {
+            watch.pulse()?;
             if is_bad(self, q) {
                 let patch = Patch::new(self, q, reach);
                 if let Some(sites) = untangled(self.domain, &patch, bound) {
@@ -183,7 +201,7 @@ impl State<'_> {
                 }
             }
         }
-        improved
+        Ok(improved)
     }
 
     fn corners(&self, quad: u32) -> [Site; 4] {

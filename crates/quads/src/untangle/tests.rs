@@ -5,7 +5,9 @@ use crate::QuadMesh;
 use crate::constraints::SlideCurve;
 use crate::quality::{Angles, Orientation, angle_deviations};
 use crate::surface::distance_to_triangle;
+use seamstress_parametrize::progress::go_on;
 use seamstress_testkit::{Rng, disk_grid};
+use std::ops::ControlFlow;
 
 fn grid() -> (Vec<Point>, Vec<[u32; 3]>, Vec<[u32; 4]>) {
     let grid = disk_grid(8, 8);
@@ -16,6 +18,26 @@ fn grid() -> (Vec<Point>, Vec<[u32; 3]>, Vec<[u32; 4]>) {
 
 fn angles(mesh: &QuadMesh) -> Angles {
     Angles::new(mesh.positions(), mesh.quads().iter().map(<[u32; 4]>::as_slice))
+}
+
+#[test]
+fn it_stops_when_the_observer_breaks() {
+    let (mut positions, faces, quads) = grid();
+    let source = positions.clone();
+    positions[40][0] += 1.0;
+    let bad = QuadMesh::new(positions, quads).unwrap();
+    let stops_after = |calls: usize| {
+        let mut seen = 0;
+        let mut observer = |_| {
+            seen += 1;
+            if seen > calls { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        untangle(&bad, (&source, &faces), &UntangleOptions::default(), &mut observer)
+    };
+    for calls in 0..3 {
+        assert!(matches!(stops_after(calls), Err(SmoothError::Cancelled(_))), "{calls}");
+    }
+    assert!(stops_after(usize::MAX).unwrap().moved > 0);
 }
 
 #[test]
@@ -31,7 +53,8 @@ fn a_tangled_grid_is_untangled_and_the_rest_stays() {
             *x += side * (3.0 * rng.unit() - 1.5);
         }
         let before = QuadMesh::new(tangled, quads.clone()).unwrap();
-        let untangled = untangle(&before, surface, &UntangleOptions::default()).unwrap();
+        let untangled =
+            untangle(&before, surface, &UntangleOptions::default(), &mut go_on).unwrap();
         let after = angles(&untangled.mesh);
         assert!(after.min >= 44.9 && after.max <= 135.1, "{seed}: {after:?}");
         let polygons = untangled.mesh.quads().iter().map(<[u32; 4]>::as_slice);
@@ -67,7 +90,8 @@ impl Case {
     fn left(&self, reaches: &[Reach]) -> usize {
         let options = UntangleOptions::default();
         let surface = (self.surface.0.as_slice(), self.surface.1.as_slice());
-        let mesh = untangle_within(&self.mesh, surface, &options, reaches).unwrap().mesh;
+        let mesh =
+            untangle_within(&self.mesh, surface, &options, reaches, &mut go_on).unwrap().mesh;
         let polygons = mesh.quads().iter().map(<[u32; 4]>::as_slice);
         let deviations = angle_deviations(mesh.positions(), polygons);
         deviations.into_iter().filter(|&off| off.is_nan() || off > 45.1).count()
@@ -123,7 +147,7 @@ fn good_quads_and_fixed_vertices_stay() {
     let (positions, faces, quads) = grid();
     let surface = (positions.as_slice(), faces.as_slice());
     let good = QuadMesh::new(positions.clone(), quads.clone()).unwrap();
-    let untangled = untangle(&good, surface, &UntangleOptions::default()).unwrap();
+    let untangled = untangle(&good, surface, &UntangleOptions::default(), &mut go_on).unwrap();
     assert_eq!((untangled.mesh, untangled.moved, untangled.largest_move), (good, 0, 0.0));
     let mut tangled = positions.clone();
     let centre = positions.iter().position(|p| p[0] == 0.0 && p[1] == 0.0).unwrap();
@@ -132,7 +156,7 @@ fn good_quads_and_fixed_vertices_stay() {
     let fixed = quads.iter().flatten().copied().collect();
     let constraints = Constraints { fixed, ..Constraints::default() };
     let options = UntangleOptions { constraints, ..UntangleOptions::default() };
-    assert_eq!(untangle(&bad, surface, &options).unwrap().moved, 0);
+    assert_eq!(untangle(&bad, surface, &options, &mut go_on).unwrap().moved, 0);
 }
 
 #[test]
@@ -153,7 +177,7 @@ fn vertices_on_a_curve_slide_along_it() {
         let curves = vec![SlideCurve { points, vertices: inner.clone() }];
         let constraints = Constraints { fixed: ends.to_vec(), curves };
         let options = UntangleOptions { constraints, ..UntangleOptions::default() };
-        let untangled = untangle(&bad, surface, &options).unwrap().mesh;
+        let untangled = untangle(&bad, surface, &options, &mut go_on).unwrap().mesh;
         let after = angles(&untangled);
         assert!(angles(&bad).max > 140.0 && after.max <= 135.1, "{after:?}");
         let at = |&v: &u32| untangled.positions()[v as usize];
@@ -204,7 +228,7 @@ fn vertices_on_a_hole_become_even_and_the_hole_stays_round() {
         assert!(ratio(&mesh, 0) > 5.0);
         let options =
             UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
-        let even = untangle(&mesh, (&points, &faces), &options).unwrap().mesh;
+        let even = untangle(&mesh, (&points, &faces), &options, &mut go_on).unwrap().mesh;
         assert!(ratio(&even, 0) < 3.0 && ratio(&even, 72) < 3.0);
         let radius = |&v: &u32| norm(even.positions()[v as usize]);
         let is_round = |v: &u32| (0.9996..=1.0).contains(&radius(v));
@@ -225,7 +249,8 @@ fn tips_are_not_cut_off() {
     let mut positions = mesh.positions().to_vec();
     positions[41] = [0.1, 0.0, 2.925];
     let bad = QuadMesh::new(positions, mesh.quads().to_vec()).unwrap();
-    let untangled = untangle(&bad, (&corners, &sides), &UntangleOptions::default()).unwrap();
+    let untangled =
+        untangle(&bad, (&corners, &sides), &UntangleOptions::default(), &mut go_on).unwrap();
     let (before, after) = (angles(&bad), angles(&untangled.mesh));
     assert!(before.max > 138.0 && after.max <= 135.1, "{before:?} {after:?}");
     // The apex may slide, but not off the top.
@@ -241,9 +266,11 @@ fn tips_are_not_cut_off() {
 fn what_cannot_be_untangled_is_refused() {
     let (positions, faces, quads) = grid();
     let mesh = QuadMesh::new(positions.clone(), quads).unwrap();
-    let error = untangle(&mesh, (&positions, &[]), &UntangleOptions::default()).unwrap_err();
+    let error =
+        untangle(&mesh, (&positions, &[]), &UntangleOptions::default(), &mut go_on).unwrap_err();
     assert!(matches!(error, SmoothError::BadSurface(_)), "{error}");
     let bow = QuadMesh::new(vec![[0.0; 3]; 7], vec![[0, 1, 2, 3], [2, 4, 5, 6]]).unwrap();
-    let error = untangle(&bow, (&positions, &faces), &UntangleOptions::default()).unwrap_err();
+    let error =
+        untangle(&bow, (&positions, &faces), &UntangleOptions::default(), &mut go_on).unwrap_err();
     assert!(matches!(error, SmoothError::NoManifold(_)), "{error}");
 }

@@ -8,6 +8,7 @@ use crate::meshes::{Mesh, Selection};
 use crate::output::{Section, progress};
 use crate::statistics::order;
 use seamstress_mesh::features::EdgeSet;
+use seamstress_parametrize::progress::go_on;
 use seamstress_quads::quality::{
     Angles, EdgeLengths, Orientation, SurfaceDistance, split_polygons, surface_distance,
 };
@@ -166,7 +167,7 @@ fn untangled(
     let start = Instant::now();
     let options =
         UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
-    let shaped = untangle(quads, source, &options)?;
+    let shaped = untangle(quads, source, &options, &mut go_on)?;
     let seconds = start.elapsed().as_secs_f64();
     progress(&format!("untangled in {seconds:.2} s: {} vertices moved", shaped.moved));
     Ok(shaped.mesh)
@@ -183,7 +184,7 @@ fn smoothed(
     }
     let start = Instant::now();
     let options = SmoothOptions { rounds, constraints };
-    let smoothed = smooth(&quads, source, &options)?.mesh;
+    let smoothed = smooth(&quads, source, &options, &mut go_on)?.mesh;
     progress(&format!("smoothed in {:.2} s", start.elapsed().as_secs_f64()));
     Ok(smoothed)
 }
