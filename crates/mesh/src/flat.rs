@@ -2,7 +2,7 @@
 
 use crate::ids::{Face, FaceData, Halfedge};
 use crate::mesh::TriMesh;
-use crate::metric::{cross, dot, norm};
+use crate::vector::{cross, dot, norm, sub};
 use std::collections::VecDeque;
 
 /// Faces that lie in one plane and hang together.
@@ -119,8 +119,4 @@ pub(crate) fn corners(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64;
 pub(crate) fn angle(corners: [[f64; 3]; 3], k: usize) -> f64 {
     let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
     norm(cross(a, b)).atan2(dot(a, b))
-}
-
-pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -17,6 +17,7 @@ mod mesh;
 mod metric;
 pub mod refine;
 pub mod soup;
+mod vector;
 
 pub use components::Component;
 pub use ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};

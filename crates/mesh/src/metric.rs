@@ -2,6 +2,7 @@
 
 use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
+use crate::vector::{cross, dot, norm};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -26,6 +27,12 @@ pub struct Metric {
 
 /// Flat triangles thinner than this fraction of their longest side are widened to it.
 const MIN_RELATIVE_HEIGHT: f64 = 1e-14;
+
+/// A triangle whose height is below this part of its longest side has no area to speak of.
+const NO_AREA: f64 = 1e-12;
+/// What the sides of triangles without area are lengthened by, of the longest edge around them: one over an edge gets a height
+/// of some hundredths of it, and copies of a vertex come apart by less.
+const OPENING: f64 = 5e-4;
 
 impl Metric {
     /// The metric of a mesh embedded in space.
@@ -93,6 +100,34 @@ impl Metric {
         let flat =
             mesh.faces().map(|f| flat_from_lengths(f.halfedges().map(|h| length[h]))).collect();
         Self::assemble(length, flat, self.unit)
+    }
+
+    /// The metric in which triangles without area, and they alone, have some: their sides are longer by a small part of
+    /// the longest edge around them. None if all have an area.
+    ///
+    /// Sides of such a triangle are then longer than those of its neighbours, which keep their shapes: what is made in
+    /// this metric is, beside these triangles, nearly what the surface without them gives.
+    pub fn opened(&self, mesh: &TriMesh) -> Option<Self> {
+        let mut around = VertexData::filled(mesh.n_vertices(), 0.0f64);
+        for h in mesh.halfedges() {
+            for v in [mesh.origin(h), mesh.tip(h)] {
+                around[v] = around[v].max(self.length[h]);
+            }
+        }
+        let mut flat = self.flat.clone();
+        let mut is_any = false;
+        for f in mesh.faces() {
+            let sides = f.halfedges().map(|h| self.length[h]);
+            let longest = sides.into_iter().fold(0.0, f64::max);
+            if 2.0 * self.area[f] > NO_AREA * longest * longest {
+                continue;
+            }
+            let by = mesh.face_vertices(f).map(|v| OPENING * around[v]);
+            let by = by.into_iter().fold(MIN_RELATIVE_HEIGHT, f64::max);
+            flat[f] = flat_from_lengths(sides.map(|side| side + by));
+            is_any = true;
+        }
+        is_any.then(|| Self::assemble(self.length.clone(), flat, self.unit))
     }
 
     fn assemble(length: HalfedgeData<f64>, flat: FaceData<[Complex64; 3]>, unit: f64) -> Self {
@@ -186,18 +221,6 @@ fn corner_angles(z: [Complex64; 3]) -> [f64; 3] {
 /// The power of two nearest below a positive number, kept within the normal range.
 fn power_of_two_near(x: f64) -> f64 {
     x.log2().floor().clamp(-1022.0, 1023.0).exp2()
-}
-
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(crate) fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

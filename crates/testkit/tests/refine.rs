@@ -109,3 +109,11 @@ fn coincident_vertices_become_one() {
             < 1e-9
     );
 }
+
+#[test]
+fn a_sheet_of_two_sides_has_a_finer_mesh() {
+    // A tetrahedron without height: the triangles of both sides have the same border.
+    let mut sheet = seamstress_testkit::tetrahedron();
+    sheet.positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.3, 0.0]];
+    assert!(check("sheet", &sheet, 0.1).is_some());
+}

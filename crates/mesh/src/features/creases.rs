@@ -6,12 +6,13 @@
 //! which bend alike. What is found is followed through gaps, and only what lasts for some cells is kept. A solid of few
 //! flat faces has hardly anything around its edges but other edges: there every sharp one is a crease.
 
-use super::dihedral::{dihedral_angle, dot};
+use super::dihedral::dihedral_angle;
 use super::{Curve, EdgeSet, FeatureGraph, NodeKind};
 use crate::flat::FlatParts;
 use crate::ids::{Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
 use crate::metric::Metric;
+use crate::vector::dot;
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_4, PI};
 

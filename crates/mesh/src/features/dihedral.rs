@@ -3,6 +3,7 @@
 use super::EdgeSet;
 use crate::ids::{Face, Halfedge};
 use crate::mesh::TriMesh;
+use crate::vector::{cross, dot};
 
 /// A triangle whose height is at most this part of its longest side has no normal.
 const MIN_RELATIVE_HEIGHT: f64 = 1e-12;
@@ -42,14 +43,6 @@ fn normal(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> Option<[f64; 3]> {
     let n = cross(sides[(longest + 1) % 3], sides[(longest + 2) % 3]);
     let size = dot(n, n).sqrt();
     (size > MIN_RELATIVE_HEIGHT * squares[longest]).then(|| n.map(|x| x / size))
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use super::{EdgeSet, TriMesh};
 use crate::ids::Vertex;
-use crate::metric::norm;
 use crate::soup::sets::SignedSets;
+use crate::vector::{norm, sub};
 use std::collections::HashMap;
 
 /// A mesh whose edges without length have been collapsed. Vertices keep their numbers; some are no longer used.
@@ -24,7 +24,7 @@ impl Merged {
     pub(super) fn new(mesh: &TriMesh, positions: &[[f64; 3]]) -> Option<Self> {
         let length = |h| {
             let [a, b] = [mesh.origin(h), mesh.tip(h)].map(|v| positions[v.at()]);
-            norm([0, 1, 2].map(|k| b[k] - a[k]))
+            norm(sub(b, a))
         };
         let mut sets = SignedSets::new(mesh.n_vertices());
         let mut is_any = false;

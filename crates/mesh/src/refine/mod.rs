@@ -12,8 +12,9 @@ use crate::features::EdgeSet;
 use crate::flat::{FlatParts, angle, corners, has_area};
 use crate::ids::{Face, Halfedge, HalfedgeData, VertexData};
 use crate::mesh::TriMesh;
+use crate::vector::{norm, sub};
 use merge::Merged;
-use triangulate::{Part, triangulate};
+use triangulate::{Part, fans, triangulate};
 
 /// A mesh of the same surface. The vertices of the source keep their numbers and come first.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,10 +58,10 @@ pub fn refine(
     let Some(merged) = Merged::new(mesh, positions) else {
         let source = Source::new(mesh, positions, features);
         let is_any_in_need = source.needs_room.iter().any(|&needs| needs);
-        return is_any_in_need.then(|| source.refined(size));
+        return is_any_in_need.then(|| source.refinement(size));
     };
     let (edges, names) = merged.edges(mesh, features);
-    let mut refined = Source::new(&merged.mesh, positions, &edges).refined(size);
+    let mut refined = Source::new(&merged.mesh, positions, &edges).refinement(size);
     refined.face_origin.iter_mut().for_each(|f| *f = merged.face_origin[*f as usize]);
     for piece in &mut refined.features {
         let [a, b] = piece.source;
@@ -124,7 +125,17 @@ impl<'a> Source<'a> {
         !self.features.contains(h) && ends.iter().all(|&v| self.is_on_curve[v])
     }
 
-    fn refined(&self, size: f64) -> Refinement {
+    /// The finer mesh. Parts that share their border, as the sides of a sheet, must not join the same points across
+    /// it; fans never do.
+    fn refinement(&self, size: f64) -> Refinement {
+        let refined = self.refined(size, triangulate);
+        match TriMesh::from_faces(refined.positions.len(), &refined.faces) {
+            Ok(_) => refined,
+            Err(_) => self.refined(size, fans),
+        }
+    }
+
+    fn refined(&self, size: f64, add: impl Fn(&Part<'_>, &mut Refinement)) -> Refinement {
         let mut refined = Refinement {
             positions: self.positions.to_vec(),
             faces: Vec::new(),
@@ -143,7 +154,7 @@ impl<'a> Source<'a> {
             }
             let size = self.needs_room[part].then(|| self.size(part as u32, size));
             let part = Part { source: self, faces, pieces: &pieces, size };
-            triangulate(&part, &mut refined);
+            add(&part, &mut refined);
         }
         for &h in self.features.edges() {
             let source = [self.mesh.origin(h).0, self.mesh.tip(h).0];
@@ -165,7 +176,7 @@ impl<'a> Source<'a> {
             let Some(size) = sizes.reduce(f64::min).filter(|_| self.is_border(h)) else { continue };
             let ends = [self.mesh.origin(h), self.mesh.tip(h)];
             let [a, b] = ends.map(|v| self.positions[v.at()]);
-            let length = crate::metric::norm([0, 1, 2].map(|k| b[k] - a[k]));
+            let length = norm(sub(b, a));
             let fewest = if self.joins_curves(h) { FEWEST_PIECES } else { 1 };
             let n = ((length / size).ceil().min(MOST_PIECES) as usize).max(fewest);
             let first = positions.len() as u32;

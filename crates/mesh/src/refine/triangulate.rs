@@ -1,8 +1,8 @@
 //! A flat part of a surface, triangulated anew.
 
 use super::{Face, HalfedgeData, Refinement, Source};
-use crate::flat::{corners, sub};
-use crate::metric::{cross, dot, norm};
+use crate::flat::corners;
+use crate::vector::{cross, dot, norm, sub};
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, HasPosition, Point2, RefinementParameters,
     Triangulation,
@@ -241,7 +241,7 @@ fn locate(at: Point2<f64>, triangles: &[[Point2<f64>; 3]]) -> (usize, [f64; 3]) 
 }
 
 /// Every face as it is, or as a fan around its center if there are points on its sides.
-fn fans(part: &Part<'_>, refined: &mut Refinement) {
+pub(super) fn fans(part: &Part<'_>, refined: &mut Refinement) {
     for &f in part.faces {
         let chains = f.halfedges().map(|h| part.source.chain(h, part.pieces));
         let ring: Vec<u32> =

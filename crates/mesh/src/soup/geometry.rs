@@ -1,27 +1,13 @@
 //! Lengths, areas and angles that neither overflow nor vanish, whatever the unit.
 
+use crate::vector::{cross, dot, norm, sub};
+
 /// A triangle counts as flat when it is no higher than this many units in the last place of its
 /// largest coordinate: coordinates that were rounded once cannot tell it from a segment.
 const FLAT_ULPS: f64 = 4.0;
 
 pub(super) fn is_finite(p: [f64; 3]) -> bool {
     p.iter().all(|x| x.is_finite())
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-pub(super) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 fn largest(a: [f64; 3]) -> f64 {
@@ -67,7 +53,7 @@ impl Local {
     /// `normal`: it neither is flat nor faces the other way.
     pub(super) fn is_positive(&self, triangle: [usize; 3], normal: [f64; 3]) -> bool {
         let [a, b, c] = triangle.map(|i| self.points[i]);
-        let (u, v, w) = (subtract(b, a), subtract(c, a), subtract(c, b));
+        let (u, v, w) = (sub(b, a), sub(c, a), sub(c, b));
         let longest = norm(u).max(norm(v)).max(norm(w));
         let area = dot(cross(u, v), normal);
         area > FLAT_ULPS * self.rounding * longest
@@ -130,7 +116,7 @@ pub(super) struct Shape {
 pub(super) fn shape(corners: [[f64; 3]; 3]) -> Shape {
     let (unit, rounding) = local_unit(&corners, corners[0]);
     let [a, b, c] = corners.map(|p| to_local(p, corners[0], unit));
-    let (ab, bc, ca) = (subtract(b, a), subtract(c, b), subtract(a, c));
+    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
     let area = norm(cross(ab, ca));
     let longest = norm(ab).max(norm(bc)).max(norm(ca));
     let angle = |u, v| f64::atan2(area, -dot(u, v));

@@ -3,8 +3,9 @@
 
 use super::TriangleSoup;
 use super::connectivity::{Connectivity, Side};
-use super::geometry::{Local, cross, dot, norm, subtract};
+use super::geometry::Local;
 use super::sets::SignedSets;
+use crate::vector::{cross, dot, norm, sub};
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::PI;
 
@@ -172,13 +173,13 @@ impl Hinge {
         let apex = |side: &Side| soup.faces[side.face() as usize][((side.corner + 2) % 3) as usize];
         let vertices = sides[0].edge.into_iter().chain(sides.iter().map(apex));
         let points = Local::new(vertices.map(|v| soup.positions[v as usize])).points;
-        let (from, along) = (points[0], unit(subtract(points[1], points[0])));
+        let (from, along) = (points[0], unit(sub(points[1], points[0])));
         let directions: Vec<[f64; 3]> = points[2..]
             .iter()
             .map(|&apex| {
-                let to = subtract(apex, from);
+                let to = sub(apex, from);
                 let height = dot(to, along);
-                unit(subtract(to, along.map(|x| x * height)))
+                unit(sub(to, along.map(|x| x * height)))
             })
             .collect();
         let is_forward: Vec<bool> = sides.iter().map(|side| side.is_forward(&soup.faces)).collect();

@@ -1,7 +1,8 @@
 //! Vertices in one place, or nearly, and which of them are to be one.
 
-use super::geometry::{is_finite, norm, subtract};
+use super::geometry::is_finite;
 use super::sets::SignedSets;
+use crate::vector::{norm, sub};
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use std::collections::HashMap;
@@ -56,7 +57,7 @@ pub fn weld_tolerance<'a>(
     let mut sides: Vec<f64> = polygons
         .clone()
         .flat_map(|polygon| polygon.iter().zip(polygon.iter().cycle().skip(1)))
-        .filter_map(|(&a, &b)| Some(norm(subtract(place(a)?, place(b)?))))
+        .filter_map(|(&a, &b)| Some(norm(sub(place(a)?, place(b)?))))
         .filter(|&length| length > 0.0)
         .collect();
     sides.sort_unstable_by(f64::total_cmp);
@@ -157,7 +158,7 @@ impl Cloud {
         let nearest = |placed: &Placed| {
             let near = self.tree.nearest_neighbor_iter(*placed.geom());
             let other = near.into_iter().find(|other| other.data != placed.data)?;
-            Some(norm(subtract(*other.geom(), *placed.geom()))).filter(|&distance| distance > 0.0)
+            Some(norm(sub(*other.geom(), *placed.geom()))).filter(|&distance| distance > 0.0)
         };
         self.tree.iter().filter_map(nearest).collect()
     }

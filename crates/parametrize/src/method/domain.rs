@@ -25,7 +25,8 @@ pub(super) struct Domain<'m> {
     pub(super) sectors: Sectors<'m>,
     /// The metric of the surface.
     pub(super) surface: &'m Metric,
-    /// The metric to work in: that of the surface, every edge longer by `lengthening`.
+    /// The metric to work in: that of the surface, in which triangles without area are opened, or every edge is longer by
+    /// `lengthening`.
     pub(super) metric: Metric,
     /// In mean edge lengths; zero unless the mesh is degenerate.
     pub(super) lengthening: f64,
@@ -56,7 +57,7 @@ impl<'m> Domain<'m> {
         Self {
             sectors,
             surface,
-            metric: surface.clone(),
+            metric: surface.opened(mesh).unwrap_or_else(|| surface.clone()),
             lengthening: 0.0,
             released,
             largest_index,
