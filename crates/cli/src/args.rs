@@ -12,7 +12,8 @@ Exit codes:
   1  the input is at fault: unreadable, not a mesh, not a seamless map, not a field of the mesh, or
      cones that no map can have
   2  wrong usage: unknown option, or an output that cannot be written
-  3  no certified map could be made, or its quads are no manifold; nothing is written
+  3  no certified map could be made, or its quads are no manifold; nothing is written, or with
+     `--partial` what could be made of the other connected parts
   4  stopped by the time limit or by Ctrl-C; nothing is written";
 
 /// The help's end: examples and exit codes.

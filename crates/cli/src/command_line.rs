@@ -105,20 +105,28 @@ const RESEARCH: [&str; 18] = [
     "max_energy_rise",
     "objective",
 ];
-/// Options that few users of `map`, `quad` and `integer` need.
-const RARE: [&str; 6] = ["corner_angle", "cone_price", "angle", "shift", "period", "format"];
+/// Options that few users of `map`, `quad` and `integer` need: `--help` shows them, `-h` does not.
+const RARE: [&str; 8] = [
+    "corner_angle",
+    "cone_price",
+    "angle",
+    "shift",
+    "period",
+    "format",
+    "small_parts",
+    "features_strict",
+];
 
 /// The command line, with its rarer options hidden.
 pub(crate) fn definition() -> clap::Command {
-    let hide = |command: clap::Command, names: &'static [&'static str]| {
-        command.mut_args(move |arg| {
-            let is_hidden = names.contains(&arg.get_id().as_str());
-            if is_hidden { arg.hide(true) } else { arg }
-        })
+    let hide = |arg: clap::Arg| match arg.get_id().as_str() {
+        id if RESEARCH.contains(&id) => arg.hide(true),
+        id if RARE.contains(&id) => arg.hide_short_help(true),
+        _ => arg,
     };
     let mut command = CommandLine::command();
     for name in ["map", "quad", "integer"] {
-        command = command.mut_subcommand(name, |c| hide(hide(c, &RESEARCH), &RARE));
+        command = command.mut_subcommand(name, |command| command.mut_args(hide));
     }
     command
 }
@@ -157,12 +165,29 @@ mod tests {
     }
 
     #[test]
+    fn options_that_messages_name_are_in_some_help() {
+        let command = definition();
+        let lab = command.find_subcommand("lab").unwrap();
+        let shown: Vec<String> = command
+            .get_subcommands()
+            .chain(lab.get_subcommands())
+            .flat_map(clap::Command::get_arguments)
+            .filter(|arg| !arg.is_hide_set())
+            .map(|arg| arg.get_id().to_string())
+            .collect();
+        for name in crate::text::OPTIONS {
+            assert!(shown.iter().any(|id| id == name), "{name}");
+        }
+    }
+
+    #[test]
     fn everyday_commands_show_few_options() {
         for name in ["map", "quad", "integer", "check", "measure", "features", "extract", "quality"]
         {
             let command = definition();
             let command = command.find_subcommand(name).unwrap();
-            let shown = command.get_arguments().filter(|arg| !arg.is_hide_set()).count();
+            let is_hidden = |arg: &&clap::Arg| arg.is_hide_set() || arg.is_hide_short_help_set();
+            let shown = command.get_arguments().filter(|arg| !is_hidden(arg)).count();
             assert!(shown <= 21, "{name} shows {shown} options");
         }
     }

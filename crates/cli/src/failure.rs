@@ -1,7 +1,7 @@
 //! How a run ends: exit codes, and failures with their messages.
 
 use crate::text::{self, as_options};
-use seamstress::{Error, ErrorCategory, ErrorKind};
+use seamstress::{Error, ErrorCategory, ErrorKind, PartReport};
 use serde_json::{Value, json};
 use std::fmt;
 use std::time::Duration;
@@ -14,6 +14,16 @@ pub(crate) enum Status {
     WrongUsage = 2,
     NoResult = 3,
     Stopped = 4,
+}
+
+impl Status {
+    /// Whether all parts could be made.
+    pub(crate) fn of_parts(parts: Option<&PartReport>) -> Self {
+        match parts.is_some_and(|parts| !parts.failed.is_empty()) {
+            true => Self::NoResult,
+            false => Self::Done,
+        }
+    }
 }
 
 /// Why a run failed: what, where, and what to do about it.
@@ -80,6 +90,7 @@ impl Failure {
             report["hint"] = json!(error.hint().map(as_options));
             report["elements"] = json!(error.elements());
             report["findings"] = json!(error.findings());
+            report["failed_parts"] = json!(error.failed_parts());
         }
         report
     }

@@ -1,17 +1,19 @@
 //! Summaries for people: rows of a label and a text.
 
 use crate::job::Cost;
-use crate::text::{counted, listing, rounded, row};
+use crate::text::{as_options, counted, listing, rounded, row};
 use seamstress::{
-    Alignment, Certificate, ComponentStats, ConeReport, Distortion, FeatureReport,
+    Alignment, Certificate, ComponentStats, ConeReport, Distortion, FailedPart, FeatureReport,
     IntegerCertificate, MapReport, Measure, Measurement, MixedIntegerStats, Orientation,
-    QuadMeshReport, QualityReport, SurfaceReport,
+    PartReport, QuadMeshReport, QualityReport, SurfaceReport,
 };
 
 /// Dropped features that are listed; the report has them all.
 const SHOWN_DROPPED: usize = 10;
 /// Components without quads that are named; the report has them all.
 const SHOWN_LOST: usize = 5;
+/// Corners turned against the source that are named; the report has them all.
+const SHOWN_TURNED: usize = 3;
 /// Faults of quads that are listed.
 const SHOWN_FAULTS: usize = 5;
 
@@ -321,10 +323,43 @@ pub(crate) fn quad_warnings(report: &QuadMeshReport) -> Vec<String> {
         let vertices = counted(quads.split_vertices, "vertex");
         lines.push(format!("note: {vertices} added where quads met in a point only"));
     }
+    lines.extend(report.parts.iter().flat_map(failed_warnings));
     lines.extend(lost_warning(&report.input, &report.quads.components_without_quads));
     lines.extend(folds_text(report).map(|text| format!("warning: {text}")));
     lines.extend(report.orientation.as_ref().and_then(orientation_warning));
     lines
+}
+
+/// Parts that failed, each with the reason and what may help.
+pub(crate) fn failed_warnings(parts: &PartReport) -> Vec<String> {
+    let warning = |part: &FailedPart| {
+        let mut text = format!("warning: {part} is left out: {}", as_options(&part.message));
+        if let Some(hint) = &part.hint {
+            text += &format!("\nhint: {}", as_options(hint));
+        }
+        text
+    };
+    parts.failed.iter().map(warning).collect()
+}
+
+/// Small parts and parts that failed.
+pub(crate) fn part_rows(parts: &PartReport) -> Vec<String> {
+    let mut rows = Vec::new();
+    if parts.small > 0 {
+        let faces = counted(parts.small_faces, "face");
+        let what = match parts.small_left_out {
+            true => "left out",
+            false => "each with a few cells of its own size",
+        };
+        let text = format!("{} smaller than a cell, of {faces}: {what}", parts.small);
+        rows.push(row("small parts", &text));
+    }
+    let names: Vec<String> = parts.failed.iter().map(ToString::to_string).collect();
+    let names = listing(&names, SHOWN_LOST);
+    if !names.is_empty() {
+        rows.push(row("failed", &format!("{}; left out", names.join(", "))));
+    }
+    rows
 }
 
 /// Components without quads, and what may give them some.
@@ -359,7 +394,7 @@ pub(crate) fn lost_warning(input: &SurfaceReport, lost: &[u32]) -> Option<String
 }
 
 fn orientation_warning(orientation: &Orientation) -> Option<String> {
-    let Orientation { inverted, crossed, .. } = *orientation;
+    let &Orientation { inverted, crossed, .. } = orientation;
     (inverted + crossed > 0).then(|| {
         let faces = counted(inverted, "face");
         format!("warning: {faces} inverted, {crossed} crossed, seen from the surface; more quads may help")
@@ -369,14 +404,17 @@ fn orientation_warning(orientation: &Orientation) -> Option<String> {
 /// How quads lie to their source.
 pub(crate) fn orientation_row(orientation: &Orientation) -> String {
     let corners = counted(orientation.turned_corners, "corner");
+    let named = orientation.turned.iter().map(|[face, v]| format!("vertex {v} in face {face}"));
+    let named = listing(&named.collect::<Vec<_>>(), SHOWN_TURNED).join(", ");
+    let named = if named.is_empty() { named } else { format!(" ({named})") };
     let bent = match orientation.bent {
         0 => String::new(),
         n => format!("; {} bent over a thin sheet or sharp edge", counted(n, "face")),
     };
     let text = match orientation.inverted + orientation.crossed {
-        0 => format!("no face is inverted; {corners} turned against the source{bent}"),
+        0 => format!("no face is inverted; {corners} turned against the source{named}{bent}"),
         _ => format!(
-            "{} inverted, {} crossed; {corners} turned against the source{bent}",
+            "{} inverted, {} crossed; {corners} turned against the source{named}{bent}",
             counted(orientation.inverted, "face"),
             orientation.crossed
         ),
@@ -545,11 +583,13 @@ mod tests {
     #[test]
     fn faulty_quads_are_reported() {
         let mut orientation = Orientation::default();
-        (orientation.bent, orientation.turned_corners) = (1, 3);
+        (orientation.bent, orientation.turned_corners) = (1, 4);
+        orientation.turned = vec![[7, 2], [7, 3], [9, 0], [11, 1]];
         assert_eq!(orientation_warning(&orientation), None);
         let text = orientation_row(&orientation);
         assert!(text.ends_with(
-            "no face is inverted; 3 corners turned against the source; 1 face bent over a thin sheet or sharp edge"
+            "no face is inverted; 4 corners turned against the source (vertex 2 in face 7, vertex 3 in face 7, vertex 0 in face 9, and 1 more); \
+             1 face bent over a thin sheet or sharp edge"
         ));
         (orientation.inverted, orientation.crossed) = (2, 1);
         let warning = orientation_warning(&orientation);

@@ -53,7 +53,7 @@ pub(crate) fn as_options(text: &str) -> String {
 }
 
 /// Options of the library that its messages name.
-const OPTIONS: [&str; 14] = [
+pub(crate) const OPTIONS: [&str; 16] = [
     "allow_flips",
     "alignment_tolerance",
     "best_effort",
@@ -62,9 +62,11 @@ const OPTIONS: [&str; 14] = [
     "features_strict",
     "format",
     "free_cones",
+    "partial",
     "pictures",
     "repair",
     "rounding",
+    "small_parts",
     "time_limit",
     "tolerance",
     "weld",

@@ -26,6 +26,23 @@ impl Component {
     }
 }
 
+/// A connected piece of a mesh for which something failed.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("component {component} (with face {face}): {cause}")]
+pub struct FailedComponent<E: std::error::Error> {
+    /// The piece, in order of first faces.
+    pub component: usize,
+    /// Its first face.
+    pub face: u32,
+    /// What failed, with the elements of the whole.
+    pub cause: E,
+}
+
+/// All pieces that failed, in words.
+pub fn listed<E: std::error::Error>(failed: &[FailedComponent<E>]) -> String {
+    failed.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
 /// Splits a mesh into its connected pieces, in order of their first face.
 ///
 /// # Errors

@@ -5,6 +5,7 @@
 mod common;
 
 use common::{assert_seamless, mapped, mesh_of, surface};
+use seamstress_mesh::components::FailedComponent;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{HalfedgeData, TriMesh};
 use seamstress_parametrize::cut::{FramedCut, Unfolding};
@@ -339,11 +340,14 @@ fn cones_that_leave_too_much_are_refused_in_the_ids_of_the_whole_mesh() {
     let cones = [(8, -1), (9, -1), (10, -1)];
     let some = ConePrescription::among_others(&mesh_of(&soup), &cones).unwrap();
     let error = start(&soup, &Start::Cones(some)).unwrap_err();
-    let MapError::Component { component: 1, face: 12, cause } = error else { panic!("{error}") };
+    let MapError::Components(failed) = error else { panic!("{error}") };
+    let [FailedComponent { component: 1, face: 12, cause }] = &failed[..] else {
+        panic!("{failed:?}")
+    };
     assert!(
         matches!(
             cause,
-            MethodError::Cones(PrescriptionError::NoTaker { vertex }) if (8..11).contains(&vertex)
+            MethodError::Cones(PrescriptionError::NoTaker { vertex }) if (8..11).contains(vertex)
         ),
         "{cause}"
     );

@@ -8,7 +8,7 @@ use seamstress_mesh::{Component, TriMesh};
 use seamstress_parametrize::SeamlessMap;
 use seamstress_parametrize::progress::Observer;
 use seamstress_quantize::{
-    Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, quantize_accepting,
+    Quantization, QuantizeError, QuantizeOptions, Refusal, quantize_accepting,
 };
 use std::cell::RefCell;
 
@@ -34,10 +34,10 @@ pub enum ManifoldError {
     /// There are no quads.
     #[error(transparent)]
     Extract(#[from] ExtractError),
-    /// They are no manifold on any grid.
+    /// Those of all components together are no manifold.
     #[error("the quads are no manifold: {faults}")]
     NoManifold {
-        /// What is wrong with those of the last grid tried.
+        /// What is wrong with them.
         #[source]
         faults: QuadFaults,
         /// Faces of the mesh where that is.
@@ -65,30 +65,20 @@ pub fn manifold_quads(
     // Rounding and the looks at its quads take turns.
     let observer = RefCell::new(observer);
     let observe = |progress| (observer.borrow_mut())(progress);
-    let mut refused = None;
     let mut is_manifold = |piece: &Component, uvs: &[[f64; 2]]| {
         let positions = piece.positions(positions);
         // A small piece may have no whole cell; whether the mesh has any is found in the end. So is a wish to stop.
         let made = extract(&piece.mesh, &positions, uvs, &settings, &mut { observe });
-        let Ok(extraction) = made else { return true };
-        let faults = extraction.mesh.connectivity().err();
-        refused = faults.map(|faults| {
+        let Ok(extraction) = made else { return Ok(()) };
+        extraction.mesh.connectivity().map(|_| ()).map_err(|faults| {
             let faces = faulty_faces(&extraction, &faults);
             let faces = faces.into_iter().map(|f| piece.faces[f as usize].0).collect();
-            ManifoldError::NoManifold { faults, faces }
-        });
-        refused.is_none()
+            Refusal { reason: format!("its quads are no manifold: {faults}"), faces }
+        })
     };
-    let made = quantize_accepting(mesh, positions, map, aligned, options, &mut is_manifold, &mut {
-        observe
-    });
-    let quantization = made.map_err(|cause| match (cause, refused) {
-        (
-            QuantizeError::Component { cause: QuantizationFailure::Refused, .. },
-            Some(no_manifold),
-        ) => no_manifold,
-        (cause, _) => cause.into(),
-    })?;
+    let accept = &mut is_manifold;
+    let quantization =
+        quantize_accepting(mesh, positions, map, aligned, options, accept, &mut { observe })?;
     let extraction =
         extract(mesh, positions, quantization.map.corner_uvs(), &settings, &mut { observe })?;
     let connectivity = extraction.mesh.connectivity().map_err(|faults| {
@@ -117,7 +107,7 @@ fn faulty_faces(extraction: &Extraction, faults: &QuadFaults) -> Vec<u32> {
 mod tests {
     use super::*;
     use seamstress_parametrize::Tolerance;
-    use seamstress_quantize::{GridSize, RoundingMethod};
+    use seamstress_quantize::{GridSize, QuantizationFailure, RoundingMethod};
     use seamstress_testkit::{squares, torus};
     use std::ops::ControlFlow;
 
@@ -160,11 +150,11 @@ mod tests {
         let nothing = EdgeSet::new(&mesh, []);
         let positions = &map.soup.positions;
         let made = manifold_quads(&mesh, positions, &seamless, &nothing, &options, &mut go_on);
-        match made.unwrap_err() {
-            ManifoldError::NoManifold { faults, faces } => {
-                assert!(!faults.0.is_empty() && !faces.is_empty());
-            }
-            other => panic!("{other}"),
-        }
+        let ManifoldError::Quantize(QuantizeError::Components(failed)) = made.unwrap_err() else {
+            panic!("a map that is refused is a failure of its component")
+        };
+        assert!(failed[0].to_string().contains("its quads are no manifold: "), "{}", failed[0]);
+        let QuantizationFailure::Refused(refusal) = &failed[0].cause else { panic!("{failed:?}") };
+        assert!(!refusal.faces.is_empty());
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::gauss::Overflow;
 use seamstress_linalg::NotPositiveDefinite;
+use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::{Component, Vertex};
 use seamstress_parametrize::map::Violations;
 use seamstress_parametrize::progress::Cancelled;
@@ -33,17 +34,9 @@ pub enum QuantizeError {
         /// Faces of the mesh.
         faces: usize,
     },
-    /// A component has no integer-grid map on this grid, nor on finer ones.
-    #[error("component {component} (with face {face}): {cause}")]
-    Component {
-        /// The component, in order of first faces.
-        component: usize,
-        /// Its first face.
-        face: u32,
-        /// What failed.
-        #[source]
-        cause: QuantizationFailure,
-    },
+    /// Components have no integer-grid map on this grid, nor on finer ones.
+    #[error("{}", components::listed(.0))]
+    Components(Vec<FailedComponent<QuantizationFailure>>),
     /// The edges given are not aligned in the map.
     #[error("the map is not aligned: {0}")]
     Misaligned(#[source] Violations),
@@ -95,11 +88,21 @@ pub enum QuantizationFailure {
         reached: f64,
     },
     /// The caller refused the map of every grid tried.
-    #[error("no grid gave an acceptable map; ask for more quads")]
-    Refused,
+    #[error("no grid gave an acceptable map: {0}; ask for more quads")]
+    Refused(#[source] Refusal),
     /// The result fails its certificate.
     #[error(transparent)]
     Uncertified(#[from] Violations),
+}
+
+/// Why a caller refuses the map of a component.
+#[derive(Debug, Clone, Default, thiserror::Error)]
+#[error("{reason}")]
+pub struct Refusal {
+    /// What is wrong with it.
+    pub reason: String,
+    /// Faces of the whole mesh where that is.
+    pub faces: Vec<u32>,
 }
 
 impl QuantizationFailure {
@@ -122,7 +125,7 @@ impl QuantizationFailure {
     pub(crate) fn is_of_grid(&self) -> bool {
         matches!(
             self,
-            Self::TooCoarse { .. } | Self::Blocked { .. } | Self::Refused | Self::Uncertified(_)
+            Self::TooCoarse { .. } | Self::Blocked { .. } | Self::Refused(_) | Self::Uncertified(_)
         )
     }
 }

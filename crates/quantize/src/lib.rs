@@ -44,7 +44,7 @@ mod stats;
 mod walk;
 
 pub use certificate::{IntegerCertificate, IntegerGridMap, IntegralTolerance};
-pub use error::{QuantizationFailure, QuantizeError};
+pub use error::{QuantizationFailure, QuantizeError, Refusal};
 pub use gauss::Overflow;
 pub use options::{GridSize, QuantizeOptions, RoundingMethod};
 pub use quantize::{Quantization, quantize, quantize_accepting};

@@ -52,9 +52,10 @@ pub struct QuantizeOptions {
     pub size: GridSize,
     /// How the integers are chosen.
     pub rounding: RoundingMethod,
-    /// Tolerance of the certificate of the seamless map in it, and of the map it is made from; what is
-    /// integral is so exactly.
+    /// Tolerance of the certificate of the seamless map in it; what is integral is so exactly.
     pub tolerance: Tolerance,
+    /// Tolerance of the map it is made from, and of the alignment there.
+    pub given: Tolerance,
     /// Roundings of usual size that a component is worth, on all grids. When they are spent, the best map so far is the
     /// result.
     pub effort: usize,
@@ -69,6 +70,7 @@ impl Default for QuantizeOptions {
             size: GridSize::Quads(5000.0),
             rounding: RoundingMethod::default(),
             tolerance: Tolerance::default(),
+            given: Tolerance::default(),
             effort: EFFORT,
         }
     }

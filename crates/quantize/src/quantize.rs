@@ -5,8 +5,9 @@ use crate::error::{QuantizationFailure, QuantizeError};
 use crate::options::{GridSize, QuantizeOptions};
 use crate::search::{Acceptance, ComponentSearch, Placement};
 use crate::stats::QuantizationStats;
+use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Component, Face, Metric, TriMesh, components};
+use seamstress_mesh::{Component, Face, Metric, TriMesh};
 use seamstress_parametrize::map::{Alignment, AlignmentTolerance, SeamlessMap};
 use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
@@ -73,7 +74,7 @@ pub fn quantize(
     options: &QuantizeOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Quantization, QuantizeError> {
-    quantize_accepting(mesh, positions, map, aligned, options, &mut |_, _| true, observer)
+    quantize_accepting(mesh, positions, map, aligned, options, &mut |_, _| Ok(()), observer)
 }
 
 /// As [`quantize`], of maps that a caller accepts component by component.
@@ -99,13 +100,11 @@ pub fn quantize_accepting(
         return Err(QuantizeError::BadSize);
     }
     let pairs = aligned.vertex_pairs(mesh);
-    Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::default())
+    Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::of_seams(&options.given))
         .map_err(QuantizeError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), accept, observer };
-    for k in 0..pieces.len() {
-        all.read(k, positions, map, aligned, options)?;
-    }
+    all.read(positions, map, aligned, options)?;
     let Sized { cell, placements, tried, .. } = all.meet(options.size)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
@@ -142,34 +141,43 @@ struct Components<'p, 'a, 'b> {
 }
 
 impl<'p> Components<'p, '_, '_> {
-    fn error(&self, k: usize, cause: QuantizationFailure) -> QuantizeError {
-        match cause.in_whole(&self.pieces[k]) {
-            QuantizationFailure::Cancelled(cancelled) => QuantizeError::Cancelled(cancelled),
-            QuantizationFailure::Uncertified(violations) => QuantizeError::Uncertified(violations),
-            cause => {
-                QuantizeError::Component { component: k, face: self.pieces[k].faces[0].0, cause }
+    /// Something of every component, or all that failed.
+    fn each<T>(
+        &mut self,
+        mut make: impl FnMut(&mut Self, usize) -> Result<T, QuantizationFailure>,
+    ) -> Result<Vec<T>, QuantizeError> {
+        let (mut all, mut failed) = (Vec::with_capacity(self.pieces.len()), Vec::new());
+        for k in 0..self.pieces.len() {
+            Watch::new(self.observer, k, self.pieces.len()).enter(Stage::Integers)?;
+            match make(self, k) {
+                Ok(made) => all.push(made),
+                Err(QuantizationFailure::Cancelled(cancelled)) => return Err(cancelled.into()),
+                Err(cause) => {
+                    let (face, cause) =
+                        (self.pieces[k].faces[0].0, cause.in_whole(&self.pieces[k]));
+                    failed.push(FailedComponent { component: k, face, cause });
+                }
             }
         }
+        if failed.is_empty() { Ok(all) } else { Err(QuantizeError::Components(failed)) }
     }
 
-    /// Reads a component.
+    /// Reads all components.
     fn read(
         &mut self,
-        k: usize,
         positions: &[[f64; 3]],
         map: &SeamlessMap,
         aligned: &EdgeSet,
         options: &'p QuantizeOptions,
     ) -> Result<(), QuantizeError> {
-        Watch::new(self.observer, k, self.pieces.len()).enter(Stage::Integers)?;
-        let piece = &self.pieces[k];
-        let positions = piece.positions(positions);
-        let metric = Metric::from_positions(&piece.mesh, &positions);
-        let uvs = piece.corner_uvs(map.corner_uvs());
-        let map = SeamlessMap::certify(&piece.mesh, uvs, &options.tolerance)
-            .map_err(|cause| self.error(k, cause.into()))?;
-        let search = ComponentSearch::new(piece, &metric, &map, &aligned.restrict(piece), options);
-        self.searches.push(search.map_err(|cause| self.error(k, cause))?);
+        self.searches = self.each(|all, k| {
+            let piece = &all.pieces[k];
+            let positions = piece.positions(positions);
+            let metric = Metric::from_positions(&piece.mesh, &positions);
+            let uvs = piece.corner_uvs(map.corner_uvs());
+            let map = SeamlessMap::certify(&piece.mesh, uvs, &options.given)?;
+            ComponentSearch::new(piece, &metric, &map, &aligned.restrict(piece), options)
+        })?;
         Ok(())
     }
 
@@ -210,16 +218,12 @@ impl<'p> Components<'p, '_, '_> {
     /// All components on cells of one size, side by side.
     fn place(&mut self, cell: f64) -> Result<Vec<Placement>, QuantizeError> {
         let mut column = 0;
-        let mut all = Vec::with_capacity(self.pieces.len());
-        for k in 0..self.pieces.len() {
-            let mut watch = Watch::new(self.observer, k, self.pieces.len());
-            watch.enter(Stage::Integers)?;
-            let placement = self.searches[k].place(cell, column, self.accept, &mut watch);
-            let placement = placement.map_err(|cause| self.error(k, cause))?;
+        self.each(|all, k| {
+            let mut watch = Watch::new(all.observer, k, all.pieces.len());
+            let placement = all.searches[k].place(cell, column, all.accept, &mut watch)?;
             // One empty column between components.
             column += placement.columns + 1;
-            all.push(placement);
-        }
-        Ok(all)
+            Ok(placement)
+        })
     }
 }

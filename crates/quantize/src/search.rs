@@ -1,7 +1,7 @@
 //! The search for the integers of one component: grid by grid, rounding by rounding, nothing learned twice.
 
 use crate::certificate::IntegerGridMap;
-use crate::error::QuantizationFailure;
+use crate::error::{QuantizationFailure, Refusal};
 use crate::farkas::farkas_cuts;
 use crate::layout::SeamlessLayout;
 use crate::obstacles::Obstacles;
@@ -21,7 +21,7 @@ use web_time::Instant;
 
 /// What a caller asks of a component's map beyond its certificate, given one UV per corner. On a refusal the search
 /// goes on with another grid.
-pub type Acceptance<'a> = dyn FnMut(&Component, &[[f64; 2]]) -> bool + 'a;
+pub type Acceptance<'a> = dyn FnMut(&Component, &[[f64; 2]]) -> Result<(), Refusal> + 'a;
 
 /// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
 /// within a few percent, but other integers are near.
@@ -105,7 +105,8 @@ impl<'a> ComponentSearch<'a> {
     ) -> Result<Self, QuantizationFailure> {
         let clock = Instant::now();
         let read = |metric: &Metric| SeamlessLayout::new(&piece.mesh, metric, map, aligned);
-        let mut layout = match read(metric) {
+        let opened = metric.opened(&piece.mesh);
+        let mut layout = match read(opened.as_ref().unwrap_or(metric)) {
             // Triangles too thin for arithmetic open up where every edge is longer.
             Err(QuantizationFailure::Unreadable) => {
                 let by = metric.lengthening(&piece.mesh, SLACK);
@@ -179,7 +180,7 @@ impl<'a> ComponentSearch<'a> {
             }
         }
         match &self.coarsest {
-            None => Err(first.unwrap_or(QuantizationFailure::Refused)),
+            None => Err(first.unwrap_or(QuantizationFailure::Refused(Refusal::default()))),
             Some(coarsest) => Ok(self.placed(self.written(coarsest, column)?, asked, first)),
         }
     }
@@ -220,9 +221,7 @@ impl<'a> ComponentSearch<'a> {
             RoundingMethod::Greedy => self.follow(h)?,
         };
         let placement = self.written(&candidate, column)?;
-        if !accept(self.piece, &placement.corner_uvs) {
-            return Err(QuantizationFailure::Refused);
-        }
+        accept(self.piece, &placement.corner_uvs).map_err(QuantizationFailure::Refused)?;
         if self.coarsest.as_ref().is_none_or(|coarsest| coarsest.h < h) {
             self.coarsest = Some(candidate);
         }
@@ -247,7 +246,7 @@ impl<'a> ComponentSearch<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<Candidate, QuantizationFailure> {
         let mut start = None;
-        let mut failure = QuantizationFailure::Refused;
+        let mut failure = QuantizationFailure::Refused(Refusal::default());
         for _ in 0..MOST_ROUNDINGS {
             let clock = Instant::now();
             let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;

@@ -6,7 +6,8 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Component, TriMesh};
 use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_quantize::{
-    GridSize, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, quantize_accepting,
+    GridSize, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, Refusal,
+    quantize_accepting,
 };
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
@@ -21,7 +22,10 @@ fn run(
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
     let options = QuantizeOptions { size, effort, ..Default::default() };
-    let mut accept = |_: &Component, _: &[[f64; 2]]| accept();
+    let mut accept = |_: &Component, _: &[[f64; 2]]| match accept() {
+        true => Ok(()),
+        false => Err(Refusal { reason: "for the test".into(), faces: vec![] }),
+    };
     let nothing = EdgeSet::new(&mesh, []);
     quantize_accepting(&mesh, &soup.positions, &map, &nothing, &options, &mut accept, &mut go_on)
 }
@@ -63,8 +67,8 @@ fn the_search_ends_with_its_budget() {
     });
     assert_eq!(grids, 3);
     match made {
-        Err(QuantizeError::Component { component: 0, face: 0, cause }) => {
-            assert!(matches!(cause, QuantizationFailure::Refused), "{cause}");
+        Err(QuantizeError::Components(failed)) => {
+            assert!(matches!(failed[0].cause, QuantizationFailure::Refused(_)), "{}", failed[0]);
         }
         other => panic!("{other:?}"),
     }

@@ -1,7 +1,8 @@
 //! Certifying and measuring maps, whatever program made them.
 
 use crate::error::{Error, Stage};
-use crate::features::{FeatureReport, Features};
+use crate::feature_sources::Features;
+use crate::features::FeatureReport;
 use crate::finding::Finding;
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
 use crate::surface::Surface;

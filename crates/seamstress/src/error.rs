@@ -1,8 +1,10 @@
 //! The one error of this crate.
 
 use crate::finding::{Elements, Finding};
+use crate::parts::FailedPart;
 use seamstress_parametrize::Stage as Step;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
@@ -202,6 +204,7 @@ struct Parts {
     hint: Option<String>,
     findings: Vec<Finding>,
     elements: Elements,
+    failed_parts: Vec<FailedPart>,
 }
 
 impl Error {
@@ -214,6 +217,7 @@ impl Error {
             hint: None,
             findings: Vec::new(),
             elements: Elements::default(),
+            failed_parts: Vec::new(),
         }))
     }
 
@@ -249,6 +253,34 @@ impl Error {
             self.0.elements.extend(&finding.elements);
         }
         self.0.findings = findings;
+        self
+    }
+
+    /// With the parts that failed, their elements and the first hint among theirs.
+    pub(crate) fn with_failed_parts(mut self, failed: Vec<FailedPart>) -> Self {
+        for part in &failed {
+            self.0.elements.extend(&part.elements);
+        }
+        self.0.stage = failed.first().and_then(|part| part.stage);
+        self.0.hint = failed.iter().find_map(|part| part.hint.clone());
+        self.0.failed_parts = failed;
+        self
+    }
+
+    /// With the numbers of failed parts replaced by those of the components that faces of the input are in.
+    pub(crate) fn with_parts_numbered(mut self, component_of: &BTreeMap<u32, u32>) -> Self {
+        for part in &mut self.0.failed_parts {
+            part.component = component_of.get(&part.first_face).copied().unwrap_or(part.component);
+        }
+        self
+    }
+
+    /// With another thing that may help.
+    pub(crate) fn with_further_hint(mut self, further: &str) -> Self {
+        self.0.hint = Some(match self.0.hint {
+            Some(hint) => format!("{hint}; {further}"),
+            None => further.into(),
+        });
         self
     }
 
@@ -296,6 +328,11 @@ impl Error {
     /// The elements it is about, in the ids of the input.
     pub fn elements(&self) -> &Elements {
         &self.0.elements
+    }
+
+    /// The connected parts that failed, where the others might be made.
+    pub fn failed_parts(&self) -> &[FailedPart] {
+        &self.0.failed_parts
     }
 
     /// Everything that is wrong, one by one, where a check failed.

@@ -1,210 +1,18 @@
-//! Features as asked for, as found on a surface, and what became of them in a map.
+//! Features as found on a surface, and what became of them in a map.
 
-use crate::error::{Error, ErrorKind, Stage};
-use crate::finding::Elements;
+use crate::error::{Error, Stage};
+use crate::feature_edges::Namer;
+use crate::feature_sources::{FeatureSource, Features};
 use crate::grid_size::GridSize;
 use crate::surface::Surface;
-#[cfg(feature = "io")]
-use seamstress_io::Attribute;
-use seamstress_mesh::features::{
-    EdgeFinder, EdgeNameError, EdgeSet, FeatureGraph, NodeKind, creases, sharp_edges,
-};
-use seamstress_mesh::{Halfedge, TriMesh, Vertex};
+use seamstress_mesh::features::{EdgeSet, FeatureGraph, NodeKind};
+use seamstress_mesh::{TriMesh, Vertex};
 use seamstress_parametrize::{
     Alignment, AlignmentTolerance, ReleaseReason, ReleasedFeature, SeamlessMap, Violations,
 };
 use seamstress_quads::Extraction;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt;
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
-/// Faulty names of a source that its error lists.
-const LISTED: usize = 5;
-
-/// Where feature edges come from.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum FeatureSource {
-    /// The boundary, and creases found by the shape of the surface: `auto`.
-    Auto,
-    /// Edges at which the surface bends by this many degrees or more: `angle:40`.
-    Angle(f64),
-    /// The boundary: `boundary`.
-    Boundary,
-    /// The `l` elements of the OBJ file of the surface: `lines`.
-    Lines,
-    /// Edges between faces of different materials in the OBJ file of the surface: `material`.
-    Material,
-    /// Edges between faces of different groups or objects: `group`.
-    Group,
-    /// Edges between faces of different smoothing groups: `smoothing`.
-    Smoothing,
-    /// Edges at which the texture coordinates of the OBJ file of the surface differ on both sides: `uv-seams`.
-    UvSeams,
-    /// Edges by their ends, vertices of the input counted from 0: `edges:0-1,1-5`.
-    Edges(Vec<[u32; 2]>),
-    /// A file of two vertices a line: `pairs:FILE`.
-    Pairs(PathBuf),
-    /// A `.sharp` file of QuadWild: `sharp:FILE`.
-    Sharp(PathBuf),
-}
-
-impl FeatureSource {
-    /// The file it is read from, other than that of the surface.
-    pub fn file(&self) -> Option<&Path> {
-        match self {
-            Self::Pairs(file) | Self::Sharp(file) => Some(file),
-            _ => None,
-        }
-    }
-}
-
-impl FromStr for FeatureSource {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
-        match (kind, rest) {
-            ("auto", "") => Ok(Self::Auto),
-            ("lines", "") => Ok(Self::Lines),
-            ("boundary", "") => Ok(Self::Boundary),
-            ("material", "") => Ok(Self::Material),
-            ("group", "") => Ok(Self::Group),
-            ("smoothing", "") => Ok(Self::Smoothing),
-            ("uv-seams", "") => Ok(Self::UvSeams),
-            ("angle", degrees) => match degrees.parse::<f64>() {
-                Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(Self::Angle(degrees)),
-                _ => Err("expected degrees, more than 0 and at most 180, after `angle:`".into()),
-            },
-            ("edges", edges) => {
-                edges.split(',').map(edge).collect::<Result<_, _>>().map(Self::Edges)
-            }
-            ("pairs", file) if !file.is_empty() => Ok(Self::Pairs(file.into())),
-            ("sharp", file) if !file.is_empty() => Ok(Self::Sharp(file.into())),
-            _ => {
-                Err("expected auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B, pairs:FILE or sharp:FILE"
-                    .into())
-            }
-        }
-    }
-}
-
-fn edge(text: &str) -> Result<[u32; 2], String> {
-    let ends = text.split_once('-');
-    let parsed = ends.and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
-    parsed.ok_or_else(|| "expected edges such as 0-1,1-5 after `edges:`".into())
-}
-
-impl fmt::Display for FeatureSource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Auto => f.write_str("auto"),
-            Self::Angle(degrees) => write!(f, "angle:{degrees}"),
-            Self::Boundary => f.write_str("boundary"),
-            Self::Lines => f.write_str("lines"),
-            Self::Material => f.write_str("material"),
-            Self::Group => f.write_str("group"),
-            Self::Smoothing => f.write_str("smoothing"),
-            Self::UvSeams => f.write_str("uv-seams"),
-            Self::Edges(edges) => {
-                let edges: Vec<String> = edges.iter().map(|[a, b]| format!("{a}-{b}")).collect();
-                write!(f, "edges:{}", edges.join(","))
-            }
-            Self::Pairs(file) => write!(f, "pairs:{}", file.display()),
-            Self::Sharp(file) => write!(f, "sharp:{}", file.display()),
-        }
-    }
-}
-
-impl Serialize for FeatureSource {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for FeatureSource {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "FeatureSource".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": "string",
-            "description": "auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B,C-D, pairs:FILE or sharp:FILE",
-        })
-    }
-}
-
-impl<'de> Deserialize<'de> for FeatureSource {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-/// Edges that a map, and quads, should follow: those of all sources.
-///
-/// The default leaves the choice to what is made: quad meshes and integer-grid maps of a mesh follow those of
-/// [`FeatureSource::Auto`], all else none.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(transparent)]
-pub struct Features {
-    sources: Option<Vec<FeatureSource>>,
-}
-
-impl Features {
-    /// No features, not even by default.
-    pub fn none() -> Self {
-        Self { sources: Some(Vec::new()) }
-    }
-
-    /// The boundary, and creases found by the shape of the surface.
-    pub fn auto() -> Self {
-        Self::none().and(FeatureSource::Auto)
-    }
-
-    /// Edges at which the surface bends by this many degrees or more.
-    pub fn angle(degrees: f64) -> Self {
-        Self::none().and(FeatureSource::Angle(degrees))
-    }
-
-    /// Edges by their ends, vertices of the input counted from 0.
-    pub fn edges(edges: impl Into<Vec<[u32; 2]>>) -> Self {
-        Self::none().and(FeatureSource::Edges(edges.into()))
-    }
-
-    /// The boundary as well.
-    pub fn with_boundary(self) -> Self {
-        self.and(FeatureSource::Boundary)
-    }
-
-    /// Those of another source as well.
-    pub fn and(mut self, source: FeatureSource) -> Self {
-        let sources = self.sources.get_or_insert_default();
-        if !sources.contains(&source) {
-            sources.push(source);
-        }
-        self
-    }
-
-    /// The sources.
-    pub fn sources(&self) -> &[FeatureSource] {
-        self.sources.as_deref().unwrap_or_default()
-    }
-
-    /// Whether none is asked for.
-    pub fn is_none(&self) -> bool {
-        self.sources().is_empty()
-    }
-
-    /// These, or others where the choice was left open.
-    pub(crate) fn or(&self, default: Self) -> Self {
-        if self.sources.is_some() { self.clone() } else { default }
-    }
-}
 
 /// The feature edges of a surface and the curves that they form.
 #[derive(Debug, Clone)]
@@ -380,6 +188,18 @@ impl FeatureCurves {
     }
 }
 
+impl FeatureReport {
+    /// Renames the vertices.
+    pub(crate) fn rename(&mut self, new: impl Fn(u32) -> u32) {
+        self.nodes.iter_mut().for_each(|node| node.vertex = new(node.vertex));
+        let of_curves = self.curves.iter_mut().flat_map(|curve| &mut curve.vertices);
+        of_curves.for_each(|v| *v = new(*v));
+        for feature in self.dropped.iter_mut().flatten() {
+            feature.vertices = feature.vertices.map(&new);
+        }
+    }
+}
+
 fn feature_node(node: &seamstress_mesh::features::Node) -> FeatureNode {
     let kind = match node.kind {
         NodeKind::OpenEnd => "open-end",
@@ -419,16 +239,31 @@ impl AlignedFeatures {
         asked: FeatureCurves,
         map: &SeamlessMap,
         dropped: &[ReleasedFeature],
+        tolerance: &AlignmentTolerance,
     ) -> Result<Self, Violations> {
         let gone: BTreeSet<[u32; 2]> = dropped.iter().map(|f| ordered(f.vertices)).collect();
         let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
         let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
-        let alignment = Alignment::certify(mesh, map, &kept, &AlignmentTolerance::default())?;
+        let alignment = Alignment::certify(mesh, map, &kept, tolerance)?;
         let mut report = asked.report;
         report.kept = Some(kept.len());
         report.dropped = Some(dropped.to_vec());
         report.alignment = Some(alignment);
         Ok(Self { kept, dropped: dropped.to_vec(), report })
+    }
+
+    /// The same in another map that keeps them, whose certificate of alignment it has.
+    ///
+    /// # Errors
+    /// What is not aligned there.
+    pub(crate) fn certified_in(
+        mut self,
+        mesh: &TriMesh,
+        map: &SeamlessMap,
+    ) -> Result<Self, Violations> {
+        let tolerance = AlignmentTolerance::default();
+        self.report.alignment = Some(Alignment::certify(mesh, map, &self.kept, &tolerance)?);
+        Ok(self)
     }
 
     /// The ends of the features that are not aligned.
@@ -474,223 +309,5 @@ impl Surface {
             edges = edges.union(self.mesh(), &found);
         }
         Ok(FeatureCurves::new(self, edges, sources))
-    }
-}
-
-/// The edges that sources name on a surface, for other uses than features.
-///
-/// # Errors
-/// If a file cannot be read, or a source names what is not an edge.
-#[cfg(feature = "lab")]
-pub(crate) fn named_edges(surface: &Surface, sources: &[FeatureSource]) -> Result<EdgeSet, Error> {
-    let namer = Namer::new(surface, GridSize::default());
-    sources.iter().try_fold(EdgeSet::new(surface.mesh(), []), |edges, source| {
-        Ok(edges.union(surface.mesh(), &namer.edges_of(source)?))
-    })
-}
-
-/// Turns the names of a source into edges.
-struct Namer<'a> {
-    surface: &'a Surface,
-    finder: EdgeFinder<'a>,
-    /// Edge length of the cells that are to follow features, mesh units.
-    cell: f64,
-}
-
-/// An edge by the vertices of the input, and what to call it in a message.
-struct Named {
-    pair: Result<[u32; 2], EdgeNameError>,
-    name: String,
-}
-
-impl<'a> Namer<'a> {
-    fn new(surface: &'a Surface, size: GridSize) -> Self {
-        let cell = size.to_quantize().cell(surface.metric().side());
-        let finder = match surface.parts().vertex_origin.as_deref() {
-            Some(origin) => {
-                EdgeFinder::after_repair(surface.mesh(), origin, surface.parts().n_input_vertices)
-            }
-            None => EdgeFinder::new(surface.mesh()),
-        };
-        Self { surface, finder, cell }
-    }
-
-    fn edges_of(&self, source: &FeatureSource) -> Result<EdgeSet, Error> {
-        let (surface, mesh) = (self.surface, self.surface.mesh());
-        match source {
-            FeatureSource::Auto => {
-                let found = creases(mesh, surface.positions(), surface.metric(), self.cell);
-                Ok(found.union(mesh, &EdgeSet::boundary(mesh)))
-            }
-            FeatureSource::Angle(degrees) => {
-                Ok(sharp_edges(mesh, surface.positions(), degrees.to_radians()))
-            }
-            FeatureSource::Boundary => Ok(EdgeSet::boundary(mesh)),
-            FeatureSource::Lines => self.find(surface.input(), self.lines()?),
-            FeatureSource::Edges(edges) => {
-                let named =
-                    |&[a, b]: &[u32; 2]| Named { pair: Ok([a, b]), name: format!("edge {a}-{b}") };
-                self.find(surface.input(), edges.iter().map(named).collect())
-            }
-            #[cfg(feature = "io")]
-            FeatureSource::Pairs(file) => {
-                let lines = seamstress_io::read_pairs(file)?.into_iter();
-                let named = lines.map(|l| Named { pair: Ok(l.vertices), name: at_line(l.line) });
-                self.find(Some(&file.display().to_string()), named.collect())
-            }
-            #[cfg(feature = "io")]
-            FeatureSource::Sharp(file) => {
-                let lines = seamstress_io::read_sharp(file)?.into_iter();
-                let named =
-                    lines.map(|l| Named { pair: self.side(l.face, l.side), name: at_line(l.line) });
-                self.find(Some(&file.display().to_string()), named.collect())
-            }
-            #[cfg(feature = "io")]
-            FeatureSource::Material => self.borders(Attribute::Material, "`usemtl` statements"),
-            #[cfg(feature = "io")]
-            FeatureSource::Group => self.borders(Attribute::Group, "`g` or `o` statements"),
-            #[cfg(feature = "io")]
-            FeatureSource::Smoothing => self.borders(Attribute::Smoothing, "`s` statements"),
-            #[cfg(feature = "io")]
-            FeatureSource::UvSeams => {
-                self.borders(Attribute::Uvs, "a texture coordinate at every corner")
-            }
-            #[cfg(not(feature = "io"))]
-            _ => Err(Error::options(format!("features: {source} needs the feature `io`"))),
-        }
-    }
-
-    fn lines(&self) -> Result<Vec<Named>, Error> {
-        let lines = &self.surface.parts().lines;
-        if lines.is_empty() {
-            let text = "features from lines need an OBJ file with `l` elements, and this has none";
-            return Err(Error::new(ErrorKind::BadFeatures, text).of(self.surface.input()));
-        }
-        let named = |&pair: &[u32; 2]| Named { pair: Ok(pair), name: "an `l` element".into() };
-        Ok(lines.iter().map(named).collect())
-    }
-
-    /// The edges at which an attribute differs on both sides.
-    #[cfg(feature = "io")]
-    fn borders(&self, attribute: Attribute, statements: &str) -> Result<EdgeSet, Error> {
-        let parts = self.surface.parts();
-        if !parts.attributes.has(attribute) {
-            let text =
-                format!("these features need an OBJ file with {statements}, and this has none");
-            return Err(Error::new(ErrorKind::BadFeatures, text).of(self.surface.input()));
-        }
-        let merged = parts.merged_into.as_deref();
-        let now = |&v: &u32| merged.map_or(v, |into| into[v as usize]);
-        let polygons: Vec<Vec<u32>> =
-            parts.polygons.iter().map(|polygon| polygon.iter().map(now).collect()).collect();
-        let borders = parts.attributes.borders(polygons.iter().map(Vec::as_slice), attribute);
-        // Repairs may have dropped a polygon at such an edge.
-        let edges = borders.into_iter().filter_map(|pair| self.finder.find(pair).ok()).flatten();
-        Ok(EdgeSet::new(self.surface.mesh(), edges))
-    }
-
-    /// The ends of a side of a polygon of the input.
-    #[cfg(feature = "io")]
-    fn side(&self, face: u32, side: u32) -> Result<[u32; 2], EdgeNameError> {
-        let polygons = &self.surface.parts().polygons;
-        let Some(polygon) = polygons.get(face as usize) else {
-            return Err(EdgeNameError::NoSuchFace { face, n_faces: polygons.len() });
-        };
-        let n_sides = polygon.len();
-        match polygon.get(side as usize) {
-            Some(&from) => Ok([from, polygon[(side as usize + 1) % n_sides]]),
-            None => Err(EdgeNameError::NoSuchSide { face, side, n_sides }),
-        }
-    }
-
-    /// What the ends of an edge are merged into.
-    fn merged(&self, pair: [u32; 2]) -> [u32; 2] {
-        let into = self.surface.parts().merged_into.as_deref().unwrap_or_default();
-        pair.map(|v| into.get(v as usize).copied().unwrap_or(v))
-    }
-
-    fn find(&self, source: Option<&str>, named: Vec<Named>) -> Result<EdgeSet, Error> {
-        let mut edges: Vec<Halfedge> = Vec::new();
-        let mut faults = Vec::new();
-        let mut elements = Elements::default();
-        for Named { pair, name } in named {
-            match pair.clone().and_then(|pair| self.finder.find(self.merged(pair))) {
-                Ok(found) => edges.extend(found),
-                Err(error) => {
-                    elements.edges.extend(pair);
-                    faults.push(format!("{name}: {error}"));
-                }
-            }
-        }
-        if faults.is_empty() {
-            return Ok(EdgeSet::new(self.surface.mesh(), edges));
-        }
-        let more = faults.len().saturating_sub(LISTED);
-        faults.truncate(LISTED);
-        if more > 0 {
-            faults.push(format!("and {more} more"));
-        }
-        let of = self.surface.input().map_or(String::from("the surface"), str::to_owned);
-        let text = format!("not edges of {of}:\n  {}", faults.join("\n  "));
-        Err(Error::new(ErrorKind::BadFeatures, text).of(source).with_elements(elements))
-    }
-}
-
-#[cfg(feature = "io")]
-fn at_line(line: usize) -> String {
-    format!("line {line}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sources_are_read_and_written_alike() {
-        let good = [
-            "auto",
-            "angle:40",
-            "angle:0.5",
-            "boundary",
-            "lines",
-            "material",
-            "group",
-            "smoothing",
-            "uv-seams",
-            "edges:0-1,4-2",
-            "pairs:a b.txt",
-            "sharp:C:\\x.sharp",
-        ];
-        for text in good {
-            let source: FeatureSource = text.parse().unwrap();
-            assert_eq!(source.to_string(), text);
-        }
-        let bad = [
-            "",
-            "auto:1",
-            "angle",
-            "angle:0",
-            "angle:181",
-            "angle:nan",
-            "lines:3",
-            "pairs",
-            "pairs:",
-            "edges:x",
-            "edges:1",
-            "edges:1-2-3",
-            "boundary:1",
-        ];
-        for text in bad {
-            assert!(text.parse::<FeatureSource>().is_err(), "{text}");
-        }
-    }
-
-    #[test]
-    fn features_are_a_list_of_sources_in_json() {
-        let features = Features::angle(40.0).with_boundary();
-        let text = serde_json::to_string(&features).unwrap();
-        assert_eq!(text, r#"["angle:40","boundary"]"#);
-        assert_eq!(serde_json::from_str::<Features>(&text).unwrap(), features);
-        assert!(serde_json::from_str::<Features>(r#"["angle:0"]"#).is_err());
     }
 }

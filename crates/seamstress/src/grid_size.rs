@@ -56,6 +56,14 @@ impl GridSize {
         }
     }
 
+    /// The same cells on a share of the surface.
+    pub(crate) fn of_share(self, share: f64) -> Self {
+        match self {
+            Self::Quads(x) => Self::Quads(x * share),
+            other => other,
+        }
+    }
+
     pub(crate) fn to_quantize(self) -> quantize::GridSize {
         match self {
             Self::Quads(x) => quantize::GridSize::Quads(x),

@@ -3,21 +3,24 @@
 use crate::certify::CertifyOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, Features, edges_of};
+use crate::feature_sources::Features;
+use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of};
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
+use crate::parts::{FailedPart, PartReport, Selection};
+use crate::quads::FEWER_CONES;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_parametrize::map::Certificate;
-use seamstress_parametrize::{self as method};
+use seamstress_parametrize::{self as method, AlignmentTolerance, Tolerance};
 use seamstress_quantize::{
     IntegerCertificate, Quantization, QuantizationFailure, QuantizationStats, QuantizeError,
-    quantize,
+    QuantizeOptions, quantize,
 };
 use serde::Serialize;
 
@@ -36,9 +39,11 @@ pub struct IntegerMapReport {
     pub options: IntegerMapOptions,
     /// The surface.
     pub input: SurfaceReport,
+    /// Its connected parts that are small, and those that failed.
+    pub parts: PartReport,
     /// The grid asked for and the one made.
     pub grid: GridReport,
-    /// How the map of each component was made, in order of first faces.
+    /// How the map of each component that is not left out was made, in order of first faces.
     pub components: Vec<QuantizationStats>,
     /// Distortion of the seamless map it was made from.
     pub distortion_before: Distortion,
@@ -140,6 +145,8 @@ impl Described for IntegerMapReport {
 pub(crate) struct SeamlessStart {
     pub(crate) map: method::SeamlessMap,
     pub(crate) features: Option<AlignedFeatures>,
+    /// What it was certified to.
+    pub(crate) tolerance: Tolerance,
 }
 
 impl SeamlessStart {
@@ -161,9 +168,9 @@ impl Surface {
         let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
-            let start = self.make_seamless(asked, options, watcher)?;
-            let solution = self.make_integer(&start, options, watcher)?;
-            Ok(self.integer_grid_map(solution, start.features, options))
+            self.integer_parts(&asked, options, watcher, |selection, options, watcher| {
+                selection.surface.make_seamless(selection.curves.clone(), options, watcher)
+            })
         });
         made.map_err(|error| error.of(self.input()))
     }
@@ -186,29 +193,61 @@ impl Surface {
         let options = &options.clone().map(options.map.or_features(Features::none()));
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let made = self.context().run(|watcher| {
-            let map = self.seamless_map(corner_uvs, certify)?;
-            let features = self.followed(&map, &options.map.features)?;
-            let start = SeamlessStart { map, features };
-            let solution = self.make_integer(&start, options, watcher)?;
-            Ok(self.integer_grid_map(solution, start.features, options))
+            // Of all components, also of those that are left out.
+            self.seamless_map(corner_uvs.clone(), certify)?;
+            let asked = self.features(&options.map.features)?;
+            self.integer_parts(&asked, options, watcher, |selection, options, _| {
+                let (surface, curves) = (&selection.surface, selection.curves.clone());
+                let map = surface.seamless_map(selection.corner_uvs(&corner_uvs), certify)?;
+                let is_asked = !options.map.features.is_none();
+                let tolerance = certify.seam_tolerance()?;
+                let followed = || surface.followed(&map, curves, &tolerance);
+                let features = is_asked.then(followed).transpose()?;
+                Ok(SeamlessStart { map, features, tolerance })
+            })
         });
         made.map_err(|error| error.of(self.input()))
+    }
+
+    /// The integer-grid map of the parts of a surface, each from a seamless map.
+    fn integer_parts(
+        &self,
+        asked: &FeatureCurves,
+        options: &IntegerMapOptions,
+        watcher: &mut Watcher,
+        start: impl Fn(&Selection, &IntegerMapOptions, &mut Watcher) -> Result<SeamlessStart, Error>,
+    ) -> Result<IntegerGridMap, Error> {
+        let made = self.make_parts(asked, options.size, options.parts, |selection, size| {
+            let options = IntegerMapOptions { size, ..options.clone() };
+            let start = start(selection, &options, watcher)?;
+            let surface = &selection.surface;
+            let solution = surface.make_integer(&start, &options, watcher)?;
+            let features = start
+                .features
+                .map(|features| features.certified_in(surface.mesh(), solution.map.seamless()));
+            let features = features.transpose().map_err(|v| surface.misaligned(&v))?;
+            let uvs = solution.map.seamless().corner_uvs();
+            let kept = features.as_ref().map_or(&[][..], |features| &features.kept);
+            let empty = surface.components_without_cells(uvs, &edges_of(surface.mesh(), kept));
+            let empty = selection.components_in_whole(&empty);
+            Ok((surface.clone(), solution, features, empty))
+        })?;
+        let ((surface, solution, features, empty), parts) = made;
+        Ok(surface.integer_grid_map(solution, features, (parts, empty), options))
     }
 
     /// What a map that is given follows of the features asked for.
     pub(crate) fn followed(
         &self,
         map: &method::SeamlessMap,
-        features: &Features,
-    ) -> Result<Option<AlignedFeatures>, Error> {
-        if features.is_none() {
-            return Ok(None);
-        }
-        let asked = self.features(features)?;
-        let (_, dropped) = method::followed(self.mesh(), map, &asked.edges)
+        asked: FeatureCurves,
+        tolerance: &Tolerance,
+    ) -> Result<AlignedFeatures, Error> {
+        let tolerance = AlignmentTolerance::of_seams(tolerance);
+        let (_, dropped) = method::followed(self.mesh(), map, &asked.edges, &tolerance)
             .map_err(|violations| self.not_a_map(&violations))?;
-        let aligned = AlignedFeatures::certify(self.mesh(), asked, map, &dropped);
-        aligned.map(Some).map_err(|violations| self.not_a_map(&violations))
+        AlignedFeatures::certify(self.mesh(), asked, map, &dropped, &tolerance)
+            .map_err(|violations| self.not_a_map(&violations))
     }
 
     /// The seamless map to start from, by the direct method, its cones those of a grid of this size.
@@ -222,7 +261,11 @@ impl Surface {
         let edge_length = options.size.to_quantize().cell(self.metric().side());
         settings.purpose = method::Purpose::Quads { edge_length };
         let made = self.make_map(asked, &options.map, settings, watcher)?;
-        Ok(SeamlessStart { map: made.inner().clone(), features: made.features().cloned() })
+        Ok(SeamlessStart {
+            map: made.inner().clone(),
+            features: made.features().cloned(),
+            tolerance: Tolerance::default(),
+        })
     }
 
     /// Rounds a seamless map, its aligned features to lines of the grid.
@@ -234,7 +277,8 @@ impl Surface {
     ) -> Result<Quantization, Error> {
         let kept = start.kept(self.mesh());
         let mut observe = |progress| watcher.observe(progress);
-        let (map, settings) = (&start.map, options.to_quantize());
+        let map = &start.map;
+        let settings = QuantizeOptions { given: start.tolerance, ..options.to_quantize() };
         quantize(self.mesh(), self.positions(), map, &kept, &settings, &mut observe)
             .map_err(|cause| self.no_integer_map(&cause, options.rounding))
     }
@@ -244,27 +288,48 @@ impl Surface {
         if matches!(cause, QuantizeError::Cancelled(_)) {
             return Error::cancelled();
         }
-        let text = format!("no certified integer-grid map could be made: {cause}");
-        let error = Error::new(ErrorKind::NoIntegerMap, text).with_hint(hint(rounding));
+        let QuantizeError::Components(failed) = cause else {
+            let text = format!("no certified integer-grid map could be made: {cause}");
+            return Error::new(ErrorKind::NoIntegerMap, text)
+                .with_hint(hint(rounding))
+                .at_stage(Some(Stage::Quantization));
+        };
+        let failed: Vec<FailedPart> = failed
+            .iter()
+            .map(|part| self.failed_part(part, &self.failed_rounding(&part.cause, rounding)))
+            .collect();
+        self.no_parts(ErrorKind::NoIntegerMap, "no certified integer-grid map", failed)
+    }
+
+    /// Why a component could not be rounded, with the elements that this names.
+    fn failed_rounding(&self, cause: &QuantizationFailure, rounding: GridRounding) -> Error {
         let mut elements = Elements::default();
-        if let QuantizeError::Component { cause, .. } = cause {
-            match cause {
-                QuantizationFailure::TooCoarse { pairs, .. } => {
-                    elements.vertices = pairs.as_flattened().to_vec();
-                    elements.vertices.sort_unstable();
-                    elements.vertices.dedup();
-                }
-                QuantizationFailure::Blocked { face, .. } => elements.faces = vec![*face],
-                _ => {}
+        let (mut kind, mut hint) = (ErrorKind::NoIntegerMap, hint(rounding));
+        match cause {
+            QuantizationFailure::TooCoarse { pairs, .. } => {
+                elements.vertices = pairs.as_flattened().to_vec();
+                elements.vertices.sort_unstable();
+                elements.vertices.dedup();
             }
+            QuantizationFailure::Blocked { face, .. } => elements.faces = vec![*face],
+            QuantizationFailure::Refused(refusal) => {
+                elements.faces.clone_from(&refusal.faces);
+                kind = ErrorKind::NotAManifold;
+                hint = FEWER_CONES;
+            }
+            _ => {}
         }
-        error.at_stage(Some(Stage::Quantization)).with_elements(self.in_input(&elements))
+        Error::new(kind, cause.to_string())
+            .at_stage(Some(Stage::Quantization))
+            .with_elements(self.in_input(&elements))
+            .with_hint(hint)
     }
 
     fn integer_grid_map(
         &self,
         solution: Quantization,
         features: Option<AlignedFeatures>,
+        (parts, components_without_quads): (PartReport, Vec<u32>),
         options: &IntegerMapOptions,
     ) -> IntegerGridMap {
         let seamless = solution.map.seamless();
@@ -272,6 +337,7 @@ impl Surface {
             seamstress: VERSION,
             options: options.clone(),
             input: self.report().clone(),
+            parts,
             grid: GridReport::new(options.size, &solution),
             distortion_before: Distortion::from(&solution.before),
             distortion: Distortion::from(&solution.distortion),
@@ -281,7 +347,7 @@ impl Surface {
             integer_certificate: solution.map.certificate().clone(),
             features: features.as_ref().map(|features| features.report.clone()),
             components: solution.components,
-            components_without_quads: self.components_without_cells(seamless.corner_uvs()),
+            components_without_quads,
         };
         SeamlessMap::reported(self, seamless.clone(), features, report)
     }

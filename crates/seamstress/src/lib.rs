@@ -49,8 +49,12 @@
 //! | `clap` | | options as command-line arguments |
 
 mod certify;
+#[doc(hidden)]
+pub mod command_reports;
 mod context;
 mod error;
+mod feature_edges;
+mod feature_sources;
 mod features;
 mod field;
 #[cfg(feature = "io")]
@@ -67,6 +71,7 @@ mod map;
 mod mesh_format;
 mod optimize;
 mod options;
+mod parts;
 #[cfg(feature = "render")]
 mod pictures;
 mod polygons;
@@ -83,10 +88,8 @@ pub mod words;
 pub use certify::{CertifyOptions, Measurements, Verdict};
 pub use context::{CancelToken, Context, Progress};
 pub use error::{Error, ErrorCategory, ErrorKind, Stage};
-pub use features::{
-    FeatureCurve, FeatureCurves, FeatureNode, FeatureReport, FeatureSource, FeatureSourceReport,
-    Features,
-};
+pub use feature_sources::{FeatureSource, Features};
+pub use features::{FeatureCurve, FeatureCurves, FeatureNode, FeatureReport, FeatureSourceReport};
 pub use field::{CrossField, EdgeMatching, FieldLoop, FieldReport, FullTurns};
 #[cfg(feature = "io")]
 pub use field::{write_cones, write_matchings};
@@ -107,6 +110,7 @@ pub use map::{MapReport, SeamlessMap};
 pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
+pub use parts::{FailedPart, PartOptions, PartReport, SmallParts};
 #[cfg(feature = "render")]
 pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};
 pub use quads::{

@@ -2,7 +2,8 @@
 
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
-use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, Features};
+use crate::feature_sources::Features;
+use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport};
 use crate::finding::{Elements, listing};
 use crate::options::MapOptions;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
@@ -10,7 +11,8 @@ use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
-    self as method, ComponentStats, MapError, ReleasedFeature, Violations, make_aligned_map,
+    self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Violations,
+    make_aligned_map,
 };
 use serde::Serialize;
 use std::collections::HashMap;
@@ -294,14 +296,21 @@ impl Surface {
         let solution =
             make_aligned_map(self.mesh(), self.positions(), &asked.edges, &settings, &mut observe)
                 .map_err(|cause| self.no_map(&cause))?;
-        let features = match options.features.is_none() {
-            true => None,
-            false => Some(
-                AlignedFeatures::certify(self.mesh(), asked, &solution.map, &solution.released)
-                    .map_err(|violations| self.misaligned(&violations))?,
-            ),
-        };
+        let certify = || self.aligned(asked, &solution.map, &solution.released);
+        let features = (!options.features.is_none()).then(certify).transpose()?;
         Ok(SeamlessMap::new(self, solution.map, features, options, solution.components))
+    }
+
+    /// Features in a map that was made along them, except for those that were dropped.
+    pub(crate) fn aligned(
+        &self,
+        asked: FeatureCurves,
+        map: &method::SeamlessMap,
+        dropped: &[ReleasedFeature],
+    ) -> Result<AlignedFeatures, Error> {
+        let tolerance = AlignmentTolerance::default();
+        AlignedFeatures::certify(self.mesh(), asked, map, dropped, &tolerance)
+            .map_err(|violations| self.misaligned(&violations))
     }
 
     /// Why there is no map.
@@ -319,17 +328,17 @@ impl Surface {
             MapError::Field(_) | MapError::Cones(_) => {
                 Error::new(ErrorKind::BadStart, cause.to_string())
             }
+            MapError::Components(failed) => {
+                let failed = failed.iter().map(|part| {
+                    let error = Error::new(ErrorKind::NoMap, part.cause.to_string());
+                    self.failed_part(part, &error.with_hint(LIMIT))
+                });
+                self.no_parts(ErrorKind::NoMap, "no certified map", failed.collect())
+            }
             _ => {
                 let message = format!("no certified map could be made: {cause}");
-                let error = Error::new(ErrorKind::NoMap, message).with_hint(
-                    "this is a limit of the method: try another `cone_bias`, or remesh triangles that are \
-                     very thin or without area",
-                );
+                let error = Error::new(ErrorKind::NoMap, message).with_hint(LIMIT);
                 match cause {
-                    MapError::Component { face, .. } => {
-                        let faces = vec![*face];
-                        error.with_elements(elements(Elements { faces, ..Elements::default() }))
-                    }
                     MapError::Uncertified(violations) => {
                         error.with_findings(self.findings(violations))
                     }
@@ -363,6 +372,10 @@ impl Surface {
         }
     }
 }
+
+/// What may help where the method fails.
+const LIMIT: &str = "this is a limit of the method: try another `cone_bias`, or remesh triangles that are very thin or \
+                     without area";
 
 /// Violations of each kind that an error lists.
 const LISTED: usize = 5;

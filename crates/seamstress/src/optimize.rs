@@ -2,7 +2,8 @@
 
 use crate::certify::CertifyOptions;
 use crate::error::{Error, ErrorKind};
-use crate::features::{AlignedFeatures, FeatureReport, Features};
+use crate::feature_sources::Features;
+use crate::features::FeatureReport;
 use crate::map::{Described, SeamlessMap};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
@@ -233,10 +234,8 @@ impl Surface {
                     .with_hint("allow a larger `bound`, or start from another map"),
                 cause => self.no_map(&cause),
             })?;
-            let certify =
-                || AlignedFeatures::certify(mesh, asked, &solution.map, &solution.released);
-            let features = is_asked.then(certify).transpose();
-            let features = features.map_err(|violations| self.misaligned(&violations))?;
+            let certify = || self.aligned(asked, &solution.map, &solution.released);
+            let features = is_asked.then(certify).transpose()?;
             let report = OptimizeReport {
                 seamstress: VERSION,
                 options: options.clone(),

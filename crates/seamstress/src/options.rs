@@ -1,8 +1,9 @@
 //! Options: what a user has a reason to change. One text each, for documentation, command line and JSON.
 
 use crate::error::Error;
-use crate::features::{FeatureSource, Features};
+use crate::feature_sources::{FeatureSource, Features};
 use crate::grid_size::GridSize;
+use crate::parts::PartOptions;
 use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
 use seamstress_quantize as quantize;
@@ -182,6 +183,10 @@ pub struct IntegerMapOptions {
         default_value_t = GridRounding::Constrained))]
     pub rounding: GridRounding,
 
+    /// What becomes of connected parts that fail, or are small
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub parts: PartOptions,
+
     /// The seamless map that is made first
     #[cfg_attr(feature = "clap", command(flatten))]
     pub map: MapOptions,
@@ -259,6 +264,10 @@ pub struct QuadOptions {
     /// What is done to the vertices
     #[cfg_attr(feature = "clap", command(flatten))]
     pub shape: ShapeOptions,
+
+    /// What becomes of connected parts that fail, or are small
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub parts: PartOptions,
 
     /// The seamless map that is made first
     #[cfg_attr(feature = "clap", command(flatten))]

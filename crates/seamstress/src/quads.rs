@@ -2,24 +2,30 @@
 
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
-use crate::features::{FeatureReport, Features};
+use crate::feature_sources::Features;
+use crate::features::FeatureReport;
 use crate::finding::Elements;
+use crate::grid_size::GridSize;
 use crate::integer::GridReport;
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
+use crate::parts::{PartReport, Selection};
 use crate::refined::Workpiece;
 use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 #[cfg(feature = "io")]
 use crate::words::counted;
-use seamstress_mesh::Face;
+use seamstress_mesh::components::{Component, components};
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Face, Halfedge};
 use seamstress_parametrize::progress::go_on;
 use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
-    QuadConnectivity, QuadFaults, SmoothError, SmoothOptions, UntangleOptions, manifold_quads,
+    ManifoldQuads, QuadConnectivity, QuadFaults, SmoothError, SmoothOptions, UntangleOptions,
+    manifold_quads,
 };
-use seamstress_quantize::{IntegerCertificate, QuantizationStats};
+use seamstress_quantize::{IntegerCertificate, Quantization, QuantizationStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
 #[cfg(feature = "io")]
@@ -46,6 +52,9 @@ pub struct QuadMeshReport {
     pub options: Option<QuadOptions>,
     /// The surface.
     pub input: SurfaceReport,
+    /// Its connected parts that are small, and those that failed; none for a map that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parts: Option<PartReport>,
     /// Triangles of the finer mesh of the same surface that quads were made on, where features lacked room or triangles
     /// area.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -185,12 +194,12 @@ impl Default for ExtractionOptions {
 
 impl QuadReport {
     fn new(
-        surface: &Surface,
+        components_without_quads: Vec<u32>,
         extraction: &Extraction,
         connectivity: Result<&QuadConnectivity, &QuadFaults>,
     ) -> Self {
         Self {
-            components_without_quads: surface.components_without(&extraction.sources),
+            components_without_quads,
             count: extraction.mesh.quads().len(),
             vertices: extraction.mesh.positions().len(),
             trimmed: extraction.trimmed,
@@ -283,6 +292,52 @@ impl QuadMesh {
     }
 }
 
+/// The quads of some parts of a surface, placed on the whole.
+struct PartQuads {
+    solution: Quantization,
+    extraction: Extraction,
+    connectivity: QuadConnectivity,
+    features: Option<FeatureReport>,
+    shaped: (Untangled, Orientation),
+    /// Triangles of the finer mesh, if there is one.
+    finer: Option<usize>,
+    /// Components without quads.
+    empty: Vec<u32>,
+}
+
+impl Selection {
+    /// The quads of a selection of parts, of about a size.
+    fn quads(
+        &self,
+        size: GridSize,
+        options: &QuadOptions,
+        watcher: &mut Watcher,
+    ) -> Result<PartQuads, Error> {
+        let map = options.map.clone();
+        let integer = IntegerMapOptions { size, map, ..IntegerMapOptions::default() };
+        let edge_length = size.to_quantize().cell(self.surface.metric().side());
+        let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length)?;
+        let surface = &work.surface;
+        let start = surface.make_seamless(work.curves.clone(), &integer, watcher)?;
+        let (kept, settings) = (start.kept(surface.mesh()), integer.to_quantize());
+        let mut observe = |progress| watcher.observe(progress);
+        let (mesh, positions, map) = (surface.mesh(), surface.positions(), &start.map);
+        let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
+            .map_err(|cause| surface.no_manifold(cause, &integer))?;
+        let ManifoldQuads { quantization: solution, mut extraction, connectivity, .. } = made;
+        let features = start.features.map(|f| f.certified_in(mesh, solution.map.seamless()));
+        let features = features.transpose().map_err(|v| surface.misaligned(&v))?;
+        let kept = features.as_ref().map_or(&[][..], |features| &features.kept);
+        let shaped = surface.shape(&mut extraction, &options.shape, kept, watcher)?;
+        work.bring_back(&mut extraction)?;
+        let empty = self.components_in_whole(&self.surface.components_without(&extraction.sources));
+        self.bring_back(&mut extraction);
+        let features = features.map(|f| self.report_in_whole(work.feature_report(&f)));
+        let finer = work.n_triangles();
+        Ok(PartQuads { solution, extraction, connectivity, features, shaped, finer, empty })
+    }
+}
+
 impl Surface {
     /// Makes a mesh of quads: a seamless map, rounded to an integer-grid map whose cells are extracted.
     ///
@@ -296,43 +351,28 @@ impl Surface {
         options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::auto()));
         let made = self.context().run(|watcher| {
-            let integer = IntegerMapOptions {
-                size: options.size,
-                map: options.map.clone(),
-                ..IntegerMapOptions::default()
-            };
-            let edge_length = options.size.to_quantize().cell(self.metric().side());
             let asked = self.features_for(&options.map.features, options.size)?;
-            let work = Workpiece::new(self, asked, edge_length)?;
-            let surface = &work.surface;
-            let start = surface.make_seamless(work.curves.clone(), &integer, watcher)?;
-            let (kept, settings) = (start.kept(surface.mesh()), integer.to_quantize());
-            let mut observe = |progress| watcher.observe(progress);
-            let (mesh, positions, map) = (surface.mesh(), surface.positions(), &start.map);
-            let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
-                .map_err(|cause| surface.no_manifold(cause, &integer))?;
-            let kept = start.features.as_ref().map_or(&[][..], |features| &features.kept);
-            let mut extraction = made.extraction;
-            let shaped = surface.shape(&mut extraction, &options.shape, kept, watcher)?;
-            work.bring_back(&mut extraction)?;
-            let map = ExtractedMap::new(&extraction);
-            let solution = made.quantization;
+            let make = |selection: &Selection, size| selection.quads(size, options, watcher);
+            let (made, parts) = self.make_parts(&asked, options.size, options.parts, make)?;
+            let PartQuads { solution, extraction, connectivity, features, shaped, finer, empty } =
+                made;
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: Some(options.clone()),
                 input: self.report().clone(),
-                finer_triangles: work.n_triangles(),
+                parts: Some(parts),
+                finer_triangles: finer,
                 grid: Some(GridReport::new(options.size, &solution)),
                 distortion: Some(Distortion::from(&solution.distortion)),
                 integer_certificate: Some(solution.map.certificate().clone()),
                 components: Some(solution.components),
-                map,
-                features: start.features.map(|features| work.feature_report(&features)),
-                quads: QuadReport::new(self, &extraction, Ok(&made.connectivity)),
+                map: ExtractedMap::new(&extraction),
+                features,
+                quads: QuadReport::new(empty, &extraction, Ok(&connectivity)),
                 mended: Some(shaped.0),
                 orientation: Some(shaped.1),
             };
-            let irregular = made.connectivity.irregular_vertices();
+            let irregular = connectivity.irregular_vertices();
             Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
         });
         made.map_err(|error| error.of(self.input()))
@@ -359,7 +399,7 @@ impl Surface {
             let (mesh, positions) = (self.mesh(), self.positions());
             let extracted = quads::extract(mesh, positions, &corner_uvs, &settings, &mut observe);
             let mut extraction =
-                extracted.map_err(|cause| self.no_quads(&cause, options.tolerance))?;
+                extracted.map_err(|cause| self.no_quads(&cause, &corner_uvs, options.tolerance))?;
             let connectivity = extraction.mesh.connectivity();
             if let (Err(faults), false) = (&connectivity, options.best_effort) {
                 return Err(
@@ -373,12 +413,15 @@ impl Surface {
                 true => Some(self.shape(&mut extraction, &options.shape, &kept, watcher)?),
                 false => None,
             };
-            let quads = QuadReport::new(self, &extraction, connectivity.as_ref());
+            let empty = self.components_without(&extraction.sources);
+            let quads = QuadReport::new(empty, &extraction, connectivity.as_ref());
             let irregular = connectivity.as_ref().map(QuadConnectivity::irregular_vertices);
+            let (mended, orientation) = shaped.unzip();
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: None,
                 input: self.report().clone(),
+                parts: None,
                 finer_triangles: None,
                 grid: None,
                 distortion: None,
@@ -387,8 +430,8 @@ impl Surface {
                 map,
                 features: (!features.is_none()).then_some(feature_report),
                 quads,
-                mended: shaped.map(|shaped| shaped.0),
-                orientation: shaped.map(|shaped| shaped.1),
+                mended,
+                orientation,
             };
             let irregular = irregular.unwrap_or_default();
             Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
@@ -396,24 +439,35 @@ impl Surface {
         made.map_err(|error| error.of(self.input()))
     }
 
-    /// The components in which no cell of an integer-grid map fits whole; only a boundary cuts cells.
-    pub(crate) fn components_without_cells(&self, corner_uvs: &[[f64; 2]]) -> Vec<u32> {
-        if self.report().boundary_loops == 0 {
-            return Vec::new();
-        }
+    /// The components in which no cell of an integer-grid map fits whole. Only a boundary cuts cells that does not lie
+    /// on lines of the grid, as aligned edges do.
+    pub(crate) fn components_without_cells(
+        &self,
+        corner_uvs: &[[f64; 2]],
+        aligned: &EdgeSet,
+    ) -> Vec<u32> {
         let settings = ExtractOptions::default();
-        match quads::extract(self.mesh(), self.positions(), corner_uvs, &settings, &mut go_on) {
-            Ok(extraction) => self.components_without(&extraction.sources),
-            Err(ExtractError::NoQuads { .. }) => self.components_without(&[]),
-            // Too many cells for extraction: nothing is known of them.
-            Err(_) => Vec::new(),
-        }
+        let is_empty = |piece: &Component| {
+            let is_cut = |h: Halfedge| {
+                let whole = piece.faces[h.face().at()].halfedge(h.side());
+                piece.mesh.twin(h).is_none() && !aligned.contains(whole)
+            };
+            if !piece.mesh.halfedges().any(is_cut) {
+                return false;
+            }
+            let (positions, uvs) =
+                (piece.positions(self.positions()), piece.corner_uvs(corner_uvs));
+            let quads = quads::extract(&piece.mesh, &positions, &uvs, &settings, &mut go_on);
+            matches!(quads, Err(ExtractError::NoQuads { .. }))
+        };
+        let pieces = components(self.mesh()).unwrap_or_default();
+        pieces.iter().zip(0..).filter(|(piece, _)| is_empty(piece)).map(|(_, k)| k).collect()
     }
 
     /// The components that none of some points lies on.
     fn components_without(&self, points: &[SurfacePoint]) -> Vec<u32> {
         // Each of them has been a mesh as part of the whole.
-        let components = seamstress_mesh::components::components(self.mesh()).unwrap_or_default();
+        let components = components(self.mesh()).unwrap_or_default();
         let mut has_points = vec![false; self.faces().len()];
         for point in points {
             has_points[point.face as usize] = true;
@@ -470,7 +524,7 @@ impl Surface {
             ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),
             ManifoldError::NoManifold { faults, faces } => no_manifold_of(&faults)
                 .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
-                .with_hint("try more quads, or fewer cones with a larger `cone_bias`"),
+                .with_hint(FEWER_CONES),
             other => {
                 let error =
                     Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}"));
@@ -483,7 +537,7 @@ impl Surface {
     }
 
     /// Why a map has no quads, with the elements it names.
-    fn no_quads(&self, cause: &ExtractError, tolerance: f64) -> Error {
+    fn no_quads(&self, cause: &ExtractError, corner_uvs: &[[f64; 2]], tolerance: f64) -> Error {
         let error = |text: String| {
             Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {text}"))
         };
@@ -493,9 +547,13 @@ impl Surface {
                 let lines = crate::finding::listing_of(&faults.0, LISTED).join("\n  ");
                 let text =
                     format!("not an integer-grid map to within {tolerance} grid units:\n  {lines}");
+                let flipped = || self.distortion(corner_uvs).flipped;
                 error(text).with_hint(match faults.is_seamless() {
-                    true => "the map is seamless, but not an integer-grid map; `integer_map` makes it one",
                     false => "a map of few digits may need a larger `tolerance`",
+                    true if flipped() > 0 => {
+                        "the map is not seamless either, since it has flips; `parametrize` makes one without"
+                    }
+                    true => "the map is seamless, but not an integer-grid map; `integer_map` makes it one",
                 })
             }
             ExtractError::Folds { flipped, collapsed } => {
@@ -525,6 +583,9 @@ fn folded(what: &str, faces: &[u32]) -> String {
         n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
     }
 }
+
+/// What may help where quads are no manifold.
+pub(crate) const FEWER_CONES: &str = "try more quads, or fewer cones with a larger `cone_bias`";
 
 fn no_manifold_of(faults: &QuadFaults) -> Error {
     Error::new(ErrorKind::NotAManifold, format!("the quads are no manifold: {faults}"))

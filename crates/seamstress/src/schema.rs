@@ -1,5 +1,6 @@
 //! The JSON schemas of options and reports.
 
+use crate::command_reports::{CheckReport, ExtractReport, FoundFeaturesReport, MeasureReport};
 use crate::{
     CertifyOptions, FeatureReport, FieldReport, IntegerMapOptions, IntegerMapReport, MapOptions,
     MapReport, Measurements, OptimizeOptions, OptimizeReport, QuadMeshReport, QuadOptions,
@@ -29,6 +30,10 @@ pub fn schemas() -> Vec<(&'static str, Schema)> {
         ("measurements", of::<Measurements>(reports())),
         ("field", of::<FieldReport>(reports())),
         ("quality", of::<QualityReport>(reports())),
+        ("check-report", of::<CheckReport>(reports())),
+        ("features-report", of::<FoundFeaturesReport>(reports())),
+        ("measure-report", of::<MeasureReport>(reports())),
+        ("extract-report", of::<ExtractReport>(reports())),
     ]
 }
 

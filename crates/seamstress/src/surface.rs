@@ -114,20 +114,42 @@ impl Surface {
         faces: Vec<[u32; 3]>,
         face_origin: &[u32],
     ) -> Result<Self, Error> {
-        let mesh = TriMesh::from_faces(positions.len(), &faces).map_err(|cause| {
-            let text = format!("a finer mesh of the surface is none: {cause}");
-            Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
-        })?;
-        let metric = Metric::from_positions(&mesh, &positions);
         let vertices = (0..self.positions().len() as u32).map(|v| self.input_vertex(v));
         let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
-        let parts = Parts {
-            input: self.inner.parts.input.clone(),
-            vertex_origin: vertices.collect(),
-            face_origin: face_origin.iter().map(origin).collect(),
-            soup: TriangleSoup { positions, faces },
-            ..Parts::default()
+        let soup = TriangleSoup { positions, faces };
+        self.remeshed(soup, vertices.collect(), face_origin.iter().map(origin).collect())
+    }
+
+    /// Some of its components, by the vertex and the face of this surface of each vertex and face.
+    ///
+    /// # Errors
+    /// A fault of this program.
+    pub(crate) fn restricted(&self, vertices: &[u32], faces: &[u32]) -> Result<Self, Error> {
+        let renumbered = |v: u32| vertices.binary_search(&v).unwrap_or_default() as u32;
+        let corners = |&face: &u32| self.faces()[face as usize].map(renumbered);
+        let soup = TriangleSoup {
+            positions: vertices.iter().map(|&v| self.positions()[v as usize]).collect(),
+            faces: faces.iter().map(corners).collect(),
         };
+        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
+        let vertex_origin = vertices.iter().map(|&v| self.input_vertex(v)).collect();
+        self.remeshed(soup, vertex_origin, faces.iter().map(origin).collect())
+    }
+
+    /// Another mesh in place of this one, with where its vertices and faces come from in the input.
+    fn remeshed(
+        &self,
+        soup: TriangleSoup,
+        vertex_origin: Option<Vec<u32>>,
+        face_origin: Vec<u32>,
+    ) -> Result<Self, Error> {
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
+            let text = format!("another mesh of the surface is none: {cause}");
+            Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
+        })?;
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let input = self.inner.parts.input.clone();
+        let parts = Parts { input, vertex_origin, face_origin, soup, ..Parts::default() };
         let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
         Ok(Self { inner, context: self.context.clone() })
     }

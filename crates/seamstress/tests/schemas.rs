@@ -2,9 +2,12 @@
 #![cfg(feature = "schema")]
 #![allow(clippy::unwrap_used, reason = "a test, with helpers")]
 
+use seamstress::command_reports::{
+    CheckReport, CheckedMapReport, ExtractReport, FoundFeaturesReport, MeasureReport,
+};
 use seamstress::{
-    CertifyOptions, Features, IntegerMapOptions, MapOptions, OptimizeOptions, PolygonMesh,
-    QuadOptions, Surface,
+    CertifyOptions, ExtractionOptions, FeatureSource, Features, Inspection, IntegerMapOptions,
+    MapOptions, OptimizeOptions, PolygonMesh, QuadOptions, Surface, SurfaceOptions,
 };
 use seamstress_testkit as testkit;
 use serde::Serialize;
@@ -89,4 +92,41 @@ fn options_follow_their_schemas_and_others_do_not() {
     for wrong in [r#"{"cone_bais": 1}"#, r#"{"cone_bias": "much"}"#, "[]"] {
         assert!(!schema.is_valid(&serde_json::from_str(wrong).unwrap()), "{wrong}");
     }
+}
+
+#[test]
+fn reports_of_commands_follow_their_schemas() {
+    let soup = testkit::l_bracket();
+    let inspection =
+        Inspection::of_polygons(&soup.positions, &soup.faces, &SurfaceOptions::default());
+    let surface = inspection.clone().surface().unwrap();
+    let curves = surface.features(&Features::angle(40.0)).unwrap();
+    let map = surface.parametrize(&MapOptions::default()).unwrap();
+    let certify = CertifyOptions::default().features(Features::angle(40.0)).integer();
+    let options = (SurfaceOptions::default(), certify.clone());
+    assert_follows("check-report", &CheckReport::new(&inspection, None, None, options.clone()));
+    // As it is, and with a triangle turned over.
+    for is_broken in [false, true] {
+        let mut face_uvs = map.face_uvs().to_vec();
+        if is_broken {
+            face_uvs[3].swap(0, 1);
+        }
+        let verdict = surface.certify_with(map.uvs(), &face_uvs, &certify).unwrap();
+        let checked = CheckedMapReport::new("map.obj".into(), &[], Some(&verdict));
+        let features = Some(curves.report());
+        let report = CheckReport::new(&inspection, features, Some(checked), options.clone());
+        assert_follows("check-report", &report);
+    }
+    assert_follows("features-report", &FoundFeaturesReport::new(surface.report(), curves.report()));
+    let measured = surface.measure(map.uvs(), map.face_uvs(), &certify).unwrap();
+    let options = (SurfaceOptions::default(), &certify);
+    let report = MeasureReport::new(surface.report(), "map.obj".into(), &measured, options);
+    assert_follows("measure-report", &report);
+
+    let integer = surface.integer_map(&IntegerMapOptions::count(200)).unwrap();
+    let (features, options) = (Features::none(), ExtractionOptions::default());
+    let quads =
+        surface.extract_quads(integer.uvs(), integer.face_uvs(), &features, &options).unwrap();
+    let sources = [FeatureSource::Angle(40.0)];
+    assert_follows("extract-report", &ExtractReport::new(quads.report(), options, &sources));
 }

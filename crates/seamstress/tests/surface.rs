@@ -313,3 +313,36 @@ fn quads_know_where_they_come_from() {
     // Index sum of a torus.
     assert_eq!(quads.irregular().iter().map(|v| v.index).sum::<i32>(), 0);
 }
+
+#[test]
+fn sheets_that_were_cut_apart_keep_their_common_curve() {
+    // Three plane rectangles at one edge: two of them go on into each other, the third stands on them.
+    let wing = |[x, y]: [f64; 2]| {
+        let mut wing = testkit::disk_grid(4, 4);
+        wing.positions.iter_mut().for_each(|p| *p = [x * (p[0] + 1.0), y * (p[0] + 1.0), p[1]]);
+        wing
+    };
+    let soup = testkit::disjoint_union(&[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]].map(wing));
+    let options = SurfaceOptions::default().repair(true).weld(Weld::Within(1e-9));
+    let surface =
+        Inspection::of_polygons(&soup.positions, &soup.faces, &options).surface().unwrap();
+    assert_eq!(surface.report().junction_edges.len(), 4);
+    let quads = surface.quad_mesh(&QuadOptions::count(300)).unwrap();
+    let features = quads.report().features.as_ref().unwrap();
+    assert_eq!(features.dropped.as_deref(), Some(&[][..]));
+    // Along the curve run edges of quads, on both sheets.
+    let is_on_curve = |v: u32| {
+        let [x, y, _] = quads.positions()[v as usize];
+        x.abs().max(y.abs()) < 1e-9
+    };
+    let sides = quads.quads().iter().flat_map(|q| (0..4).map(|k| [q[k], q[(k + 1) % 4]]));
+    let mut on_curve: Vec<[u32; 2]> = sides
+        .filter(|side| side.iter().all(|&v| is_on_curve(v)))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    on_curve.sort_unstable();
+    on_curve.dedup();
+    let height = |v: u32| quads.positions()[v as usize][2];
+    let length: f64 = on_curve.iter().map(|&[a, b]| (height(a) - height(b)).abs()).sum();
+    assert!((length - 4.0).abs() < 1e-9, "{length}");
+}

@@ -7,11 +7,13 @@ use crate::failure::{Failure, Status};
 use crate::output::{Kind, Plan};
 use crate::summary;
 use crate::text::{as_options, counted, row};
+use seamstress::command_reports::{CheckReport, CheckedMapReport};
 use seamstress::{
     CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Severity,
     Surface, SurfaceOptions, Verdict, ViewOptions, listing,
 };
-use serde_json::{Value, json};
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -24,8 +26,8 @@ Examples:
   seamstress check part.obj grid.obj --integer --features angle:40 --align-boundary
   seamstress check scan.stl --json | jq '.faults[].message'";
 
-/// Faults of each kind that are printed.
-const SHOWN: usize = 20;
+/// Faults and violations that are printed, of all kinds together.
+const SHOWN: usize = 10;
 /// An angle to an axis, in degrees, that numbers of few digits may explain.
 const FEW_DIGITS: f64 = 0.01;
 
@@ -136,42 +138,41 @@ impl CheckedMap {
         self.differences.iter().chain(found).cloned().collect()
     }
 
-    fn json(&self, path: &Path) -> Value {
-        let mut value = self.verdict.as_ref().map_or_else(|| json!({}), to_json);
-        let is_aligned = self.verdict.as_ref().and_then(|verdict| verdict.aligned);
-        if !self.is_certified() {
-            for gone in ["certificate", "cones", "seams", "aligned", "alignment"] {
-                value.as_object_mut().map(|fields| fields.remove(gone));
-            }
-        } else if is_aligned == Some(false) {
-            value["alignment"] = json!({ "violations": value["alignment_violations"] });
-        }
-        if self.is_certified() && value["integral"] == false {
-            value["integer_certificate"] = json!({ "violations": value["integer_violations"] });
-        }
-        for gone in ["alignment_violations", "integer_violations", "features"] {
-            value.as_object_mut().map(|fields| fields.remove(gone));
-        }
-        value["file"] = path.to_string_lossy().into();
-        value["certified"] = self.is_certified().into();
-        value["violations"] = json!(self.violations());
-        value
+    fn report(&self, path: &Path) -> CheckedMapReport {
+        let file = path.to_string_lossy().into();
+        CheckedMapReport::new(file, &self.differences, self.verdict.as_ref())
+    }
+
+    /// What was found in one line.
+    fn verdict_text(&self) -> String {
+        let Some(verdict) = self.verdict.as_ref().filter(|_| self.is_certified()) else {
+            return "failed: not a seamless map of the mesh".into();
+        };
+        let checks = [
+            (verdict.aligned, ["features on its axes", "features off its axes"]),
+            (verdict.integral, ["an integer-grid map", "no integer-grid map"]),
+        ];
+        let word = if self.is_passed() { "passed" } else { "failed" };
+        let found =
+            checks.iter().filter_map(|&(passed, [yes, no])| Some(if passed? { yes } else { no }));
+        let found: Vec<&str> = std::iter::once("a seamless map").chain(found).collect();
+        format!("{word}: {}", found.join(", "))
     }
 
     fn rows(&self) -> Vec<String> {
         let verdict = self.verdict.as_ref();
-        let mut rows: Vec<String> =
-            verdict.iter().flat_map(|v| summary::distortion_rows(&v.distortion)).collect();
+        let mut rows = vec![row("verdict", &self.verdict_text())];
+        rows.extend(verdict.iter().flat_map(|v| summary::distortion_rows(&v.distortion)));
         if !self.is_certified() {
             let violations = self.violations();
-            rows.extend(violation_rows(&violations));
-            rows.extend(tolerance_row(&violations));
             let count = counted(violations.len(), "violation");
             let text = format!("failed: {count} (elements counted from 0)");
             rows.push(row("certificate", &text));
             if verdict.is_some_and(|verdict| verdict.integral.is_some()) {
                 rows.push(row("integers", "not checked, since the map is not seamless"));
             }
+            rows.extend(tolerance_row(&violations));
+            rows.extend(listed("violation", &violations));
             return rows;
         }
         let Some(verdict) = verdict else { return rows };
@@ -181,18 +182,18 @@ impl CheckedMap {
         rows.extend(verdict.alignment.iter().map(summary::alignment_row));
         if verdict.aligned == Some(false) {
             let violations = &verdict.alignment_violations;
-            rows.extend(violation_rows(violations));
-            rows.extend(off_axis_row(violations));
             let count = counted(violations.len(), "violation");
             rows.push(row("alignment", &format!("failed: {count}")));
+            rows.extend(off_axis_row(violations));
+            rows.extend(listed("violation", violations));
         }
         rows.extend(verdict.integer_certificate.iter().map(summary::integers_row));
         if verdict.integral == Some(false) {
             let violations = &verdict.integer_violations;
-            rows.extend(violation_rows(violations));
             let count = counted(violations.len(), "violation");
             let hint = "maps written with few digits need `--integer-tolerance`";
             rows.push(row("integers", &format!("failed: {count}; {hint}")));
+            rows.extend(listed("violation", violations));
         }
         rows
     }
@@ -238,33 +239,12 @@ impl Command for CheckArgs {
     }
 
     fn report(&self, checked: &Checked) -> Value {
-        let options = self.options();
-        let mut value = json!({
-            "seamstress": seamstress::VERSION,
-            "options": {
-                "repair": self.surface.repair,
-                "weld": self.surface.weld,
-                "tolerance": options.tolerance,
-                "features": options.features,
-                "alignment_tolerance": options.alignment_tolerance,
-                "integer": options.integer,
-                "integer_tolerance": options.integer_tolerance,
-            },
-            "input": checked.inspection.report(),
-        });
-        let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref()).next();
-        if let Some(curves) = curves {
-            value["features"] = to_json(curves.report());
-        }
-        match (&checked.map, &self.map) {
-            (Some(map), Some(path)) => value["map"] = map.json(path),
-            _ => {
-                value["faults"] = json!(checked.inspection.findings());
-                value["is_mesh"] = checked.inspection.is_surface().into();
-                value["is_repairable"] = checked.inspection.is_repairable().into();
-            }
-        }
-        value
+        let curves = checked.surface.iter().find_map(|(_, curves)| curves.as_ref());
+        let features = curves.map(FeatureCurves::report);
+        let map = checked.map.as_ref().zip(self.map.as_ref());
+        let map = map.map(|(map, path)| map.report(path));
+        let options = (self.surface, self.options());
+        to_json(&CheckReport::new(&checked.inspection, features, map, options))
     }
 
     fn summary(&self, checked: &Checked) -> Vec<String> {
@@ -277,6 +257,7 @@ impl Command for CheckArgs {
             rows.extend(map.rows());
             return rows;
         }
+        rows.push(row("verdict", &verdict_text(inspection)));
         rows.extend(summary::size_rows(inspection.report()));
         let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
         rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
@@ -286,9 +267,8 @@ impl Command for CheckArgs {
         rows.extend(repairs.iter().map(|repair| row("repair", repair)));
         for (severity, label) in [(Severity::Warning, "warning"), (Severity::Error, "fault")] {
             let found = inspection.findings().iter().filter(|f| f.severity == severity);
-            rows.extend(listing(found, SHOWN).iter().map(|line| row(label, line)));
+            rows.extend(listed(label, found));
         }
-        rows.push(row("verdict", &verdict_text(inspection)));
         rows
     }
 
@@ -318,8 +298,12 @@ fn verdict_text(inspection: &Inspection) -> String {
     text
 }
 
-fn violation_rows(violations: &[Finding]) -> Vec<String> {
-    listing(violations, SHOWN).iter().map(|line| row("violation", line)).collect()
+/// The first findings of every kind, and how many more there are.
+fn listed<'a>(label: &str, findings: impl IntoIterator<Item = &'a Finding>) -> Vec<String> {
+    let findings: Vec<&Finding> = findings.into_iter().collect();
+    let kinds: BTreeSet<&str> = findings.iter().map(|finding| finding.kind.as_str()).collect();
+    let of_each = (SHOWN / kinds.len().max(1)).max(1);
+    listing(findings, of_each).iter().map(|line| row(label, line)).collect()
 }
 
 /// The largest value of a number that violations of a kind have.

@@ -1,11 +1,12 @@
 //! `seamstress extract`.
 
-use super::{inputs, targets};
+use super::quad_files::{self, QuadFiles};
 use crate::args::{RunArgs, after_help};
 use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
-use crate::output::{Kind, Plan, Target};
+use crate::output::{Plan, Target};
 use crate::summary;
+use seamstress::command_reports::ExtractReport;
 use seamstress::{
     Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh, ViewOptions,
 };
@@ -33,12 +34,8 @@ pub(crate) struct ExtractArgs {
     #[arg(value_name = "MAP.obj")]
     map: PathBuf,
 
-    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
-    /// as OBJ
-    ///
-    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
-    #[arg(short, long, value_name = "QUADS")]
-    output: PathBuf,
+    #[command(flatten)]
+    files: QuadFiles,
 
     #[command(flatten)]
     options: ExtractionOptions,
@@ -50,14 +47,6 @@ pub(crate) struct ExtractArgs {
     /// along it during untangling and smoothing. Those that the quads do not follow are reported as dropped.
     #[arg(long, value_name = "SOURCE")]
     features: Vec<FeatureSource>,
-
-    /// Write everything about the run to this JSON file
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
-
-    /// Write a picture of the quad mesh with its irregular vertices to this PNG file
-    #[arg(long, value_name = "FILE.png", group = "drawn")]
-    picture: Option<PathBuf>,
 
     #[command(flatten)]
     run: RunArgs,
@@ -79,11 +68,7 @@ impl Command for ExtractArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        let mut files = targets(Kind::Picture, &self.picture);
-        files.extend(targets(Kind::Report, &self.report));
-        files.extend(targets(Kind::Quads, [&self.output]));
-        let features = self.features.iter().filter_map(FeatureSource::file);
-        Plan::new(&inputs(&self.map, features), None, files)
+        self.files.plan(&self.map, self.features.iter().filter_map(FeatureSource::file))
     }
 
     fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {
@@ -98,23 +83,15 @@ impl Command for ExtractArgs {
     }
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| quads.picture(&self.view)).collect()
+        self.files.pictures(quads, &self.view)
     }
 
-    fn write(
-        &self,
-        quads: &QuadMesh,
-        target: &Target,
-        mut file: &mut dyn io::Write,
-    ) -> io::Result<()> {
-        quads.write_as(&target.path, &mut file)
+    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn io::Write) -> io::Result<()> {
+        quad_files::write(quads, target, file)
     }
 
     fn report(&self, quads: &QuadMesh) -> Value {
-        let mut value = to_json(quads.report());
-        value["options"] = to_json(&self.options);
-        value["options"]["features"] = to_json(&self.features);
-        value
+        to_json(&ExtractReport::new(quads.report(), self.options, &self.features))
     }
 
     fn summary(&self, quads: &QuadMesh) -> Vec<String> {

@@ -6,8 +6,9 @@ use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan};
 use crate::summary;
+use seamstress::command_reports::FoundFeaturesReport;
 use seamstress::{Error, FeatureCurves, Features, Surface, SurfaceOptions, ViewOptions};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -73,11 +74,7 @@ impl Command for FeaturesArgs {
     }
 
     fn report(&self, (surface, curves): &Self::Product) -> Value {
-        json!({
-            "seamstress": seamstress::VERSION,
-            "input": surface.report(),
-            "features": to_json(curves.report()),
-        })
+        to_json(&FoundFeaturesReport::new(surface.report(), curves.report()))
     }
 
     fn summary(&self, (surface, curves): &Self::Product) -> Vec<String> {

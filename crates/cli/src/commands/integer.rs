@@ -3,13 +3,13 @@
 use super::{draw_map, inputs, map_pictures, targets};
 use crate::args::{FeatureArgs, RunArgs, SizeArgs, after_help, not_negative};
 use crate::command::{Command, Session, to_json};
-use crate::failure::Failure;
+use crate::failure::{Failure, Status};
 use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
     CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
-    MapOptions, QuantizationStats, SurfaceOptions, TextureOptions,
+    MapOptions, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io;
@@ -51,6 +51,9 @@ pub(crate) struct IntegerArgs {
     #[arg(long, value_enum, value_name = "HOW", default_value_t = GridRounding::Constrained)]
     rounding: GridRounding,
 
+    #[command(flatten)]
+    parts: PartOptions,
+
     /// Write everything about the run to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -83,6 +86,7 @@ impl IntegerArgs {
     fn options(&self) -> IntegerMapOptions {
         let mut options = IntegerMapOptions::default();
         (options.size, options.rounding) = (self.size.grid(), self.rounding);
+        options.parts = self.parts;
         options.map(self.method.clone()).features(self.features.or(Features::default()))
     }
 }
@@ -123,7 +127,8 @@ impl Command for IntegerArgs {
         };
         let report = integer.report();
         let lost = summary::lost_warning(&report.input, &report.components_without_quads);
-        lost.iter().for_each(|line| session.report(line));
+        let failed = summary::failed_warnings(&report.parts);
+        failed.iter().chain(&lost).for_each(|line| session.report(line));
         Ok(integer)
     }
 
@@ -149,6 +154,7 @@ impl Command for IntegerArgs {
     fn summary(&self, map: &IntegerGridMap) -> Vec<String> {
         let report = map.report();
         let mut rows = summary::surface_rows(&report.input);
+        rows.extend(summary::part_rows(&report.parts));
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
         rows.push(row("grid", &report.grid.to_string()));
         rows.extend(summary::distortion_rows(&report.distortion));
@@ -163,6 +169,10 @@ impl Command for IntegerArgs {
         rows.push(summary::integers_row(&report.integer_certificate));
         rows.extend(report.features.iter().flat_map(summary::aligned_rows));
         rows
+    }
+
+    fn status(&self, map: &IntegerGridMap) -> Status {
+        Status::of_parts(Some(&map.report().parts))
     }
 
     fn stages(&self, map: &IntegerGridMap) -> Option<Vec<(&'static str, f64)>> {

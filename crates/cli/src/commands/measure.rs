@@ -8,11 +8,12 @@ use crate::output::{Kind, Plan};
 use crate::summary;
 use crate::text::{counted, row};
 use clap::builder::PossibleValuesParser;
+use seamstress::command_reports::MeasureReport;
 use seamstress::{
     CertifyOptions, Error, MapFile, Measure, Measurements, Objective, Surface, SurfaceOptions,
     ViewOptions,
 };
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -103,17 +104,9 @@ impl Command for MeasureArgs {
     }
 
     fn report(&self, (surface, measured): &Self::Product) -> Value {
-        let mut map = to_json(measured);
-        map["file"] = self.map.to_string_lossy().into();
-        let measures = map["measures"].take();
-        map.as_object_mut().map(|fields| fields.remove("measures"));
-        json!({
-            "seamstress": seamstress::VERSION,
-            "options": { "repair": self.surface.repair, "tolerance": self.options().tolerance },
-            "input": surface.report(),
-            "map": map,
-            "measures": measures,
-        })
+        let file = self.map.to_string_lossy().into();
+        let options = (self.surface, &self.options());
+        to_json(&MeasureReport::new(surface.report(), file, measured, options))
     }
 
     fn summary(&self, (surface, measured): &Self::Product) -> Vec<String> {

@@ -12,6 +12,7 @@ mod matchings;
 mod measure;
 mod optimize;
 mod quad;
+mod quad_files;
 mod quality;
 
 pub(crate) use check::CheckArgs;

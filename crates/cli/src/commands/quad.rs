@@ -1,14 +1,15 @@
 //! `seamstress quad`.
 
-use super::{inputs, targets};
+use super::quad_files::{self, QuadFiles};
 use crate::args::{FeatureArgs, RunArgs, SizeArgs, after_help};
 use crate::command::{Command, Session, to_json};
-use crate::failure::Failure;
-use crate::output::{Kind, Plan, Target};
+use crate::failure::{Failure, Status};
+use crate::output::{Plan, Target};
 use crate::summary;
 use crate::text::row;
 use seamstress::{
-    Error, Features, MapOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions, ViewOptions,
+    Error, Features, MapOptions, PartOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
+    ViewOptions,
 };
 use serde_json::Value;
 use std::io;
@@ -33,12 +34,8 @@ pub(crate) struct QuadArgs {
     /// The mesh: OBJ, OFF, PLY or STL, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
-    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
-    /// as OBJ
-    ///
-    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
-    #[arg(short, long, value_name = "QUADS")]
-    output: PathBuf,
+    #[command(flatten)]
+    files: QuadFiles,
 
     #[command(flatten)]
     size: SizeArgs,
@@ -46,13 +43,8 @@ pub(crate) struct QuadArgs {
     #[command(flatten)]
     shape: ShapeOptions,
 
-    /// Write everything about the run to this JSON file
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
-
-    /// Write a picture of the quad mesh with its irregular vertices to this PNG file
-    #[arg(long, value_name = "FILE.png", group = "drawn")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    parts: PartOptions,
 
     #[command(flatten)]
     surface: SurfaceOptions,
@@ -73,8 +65,8 @@ pub(crate) struct QuadArgs {
 impl QuadArgs {
     fn options(&self) -> QuadOptions {
         let mut options = QuadOptions::default();
-        (options.size, options.shape, options.map) =
-            (self.size.grid(), self.shape, self.map.clone());
+        (options.size, options.shape) = (self.size.grid(), self.shape);
+        (options.parts, options.map) = (self.parts, self.map.clone());
         options.features(self.features.or(Features::default()))
     }
 }
@@ -92,10 +84,7 @@ impl Command for QuadArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        let mut files = targets(Kind::Picture, &self.picture);
-        files.extend(targets(Kind::Report, &self.report));
-        files.extend(targets(Kind::Quads, [&self.output]));
-        Plan::new(&inputs(&self.mesh, self.features.files()), None, files)
+        self.files.plan(&self.mesh, self.features.files())
     }
 
     fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {
@@ -106,16 +95,11 @@ impl Command for QuadArgs {
     }
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
-        self.picture.iter().map(|_| quads.picture(&self.view)).collect()
+        self.files.pictures(quads, &self.view)
     }
 
-    fn write(
-        &self,
-        quads: &QuadMesh,
-        target: &Target,
-        mut file: &mut dyn io::Write,
-    ) -> io::Result<()> {
-        quads.write_as(&target.path, &mut file)
+    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn io::Write) -> io::Result<()> {
+        quad_files::write(quads, target, file)
     }
 
     fn report(&self, quads: &QuadMesh) -> Value {
@@ -125,6 +109,7 @@ impl Command for QuadArgs {
     fn summary(&self, quads: &QuadMesh) -> Vec<String> {
         let report = quads.report();
         let mut rows = summary::surface_rows(&report.input);
+        rows.extend(report.parts.iter().flat_map(summary::part_rows));
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
         rows.extend(report.grid.iter().map(|grid| row("grid", &grid.to_string())));
         if report.features.is_some() {
@@ -134,6 +119,10 @@ impl Command for QuadArgs {
         rows.extend(report.distortion.iter().flat_map(summary::distortion_rows));
         rows.extend(summary::quad_rows(report));
         rows
+    }
+
+    fn status(&self, quads: &QuadMesh) -> Status {
+        Status::of_parts(quads.report().parts.as_ref())
     }
 
     fn stages(&self, _: &QuadMesh) -> Option<Vec<(&'static str, f64)>> {

@@ -79,3 +79,57 @@ fn wrong_usage_and_failures() {
     folder.expect(1, &["integer", "in.off", "other.obj", "--quads", "50", "-o", "o.obj"]);
     assert_eq!(folder.names(), ["in.off", "other.obj"]);
 }
+
+#[test]
+fn maps_of_few_digits_are_rounded_within_a_tolerance() {
+    let folder = Folder::new();
+    let part = testkit::subdivide(&testkit::subdivide(&testkit::l_bracket()));
+    folder.write_obj("part.obj", &part);
+    folder.expect(0, &["map", "part.obj", "-o", "map.obj", "--features", "angle:40"]);
+    let few = |line: &str| match line.strip_prefix("vt ") {
+        None => line.to_owned(),
+        Some(uv) => {
+            let numbers = uv.split(' ').map(|x| format!("{:.5}", x.parse::<f64>().unwrap()));
+            format!("vt {}", numbers.collect::<Vec<_>>().join(" "))
+        }
+    };
+    let lines: Vec<String> = folder.read("map.obj").lines().map(few).collect();
+    folder.write("few.obj", lines.join("\n"));
+    let command = ["integer", "part.obj", "few.obj", "--quads", "400", "-o", "int.obj"];
+    let features = ["--features", "angle:40"];
+    let refused = folder.run(&[&command[..], &features].concat());
+    if refused.code != Some(0) {
+        assert!(refused.stderr.contains("larger `--tolerance`"), "{refused:#?}");
+    }
+    let arguments = [&command[..], &features, &["--tolerance", "1e-3", "--json"]].concat();
+    let run = folder.expect(0, &arguments);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(report["features"]["dropped"].as_array().map(Vec::len), Some(0));
+    let check = ["check", "part.obj", "int.obj", "--integer"];
+    folder.expect(0, &[&check[..], &features].concat());
+}
+
+#[test]
+fn a_part_that_fails_is_named_and_the_others_are_written_on_request() {
+    let folder = Folder::new();
+    // Greedy rounding takes what is smaller than a cell to a point.
+    let speck = testkit::scale(&testkit::cube(), 0.01);
+    folder.write_obj("both.obj", &testkit::disjoint_union(&[testkit::cube(), speck]));
+    let command =
+        ["integer", "both.obj", "--quads", "600", "--rounding", "greedy", "-o", "out.obj"];
+    let run = folder.expect(3, &command);
+    assert!(run.stderr.contains("\n  component 1 (12 faces from face 12): "), "{run:#?}");
+    assert!(run.stderr.contains("\nNothing was written\nhint: "), "{run:#?}");
+    assert!(run.stderr.ends_with("; `--partial` makes the other components\n"), "{run:#?}");
+    assert_eq!(folder.names(), ["both.obj"]);
+
+    let partial = [&command[..], &["--partial"]].concat();
+    let run = folder.expect(3, &partial);
+    let warning = "warning: component 1 (12 faces from face 12) is left out: ";
+    assert!(run.stderr.starts_with(warning), "{run:#?}");
+    let row = "failed       component 1 (12 faces from face 12); left out\n";
+    assert!(run.stdout.contains(row), "{run:#?}");
+    assert_eq!(lines_of(&folder.read("out.obj"), "f").len(), 12);
+    // Being stopped is no failure of a part.
+    folder.expect(4, &[&partial[..], &["--time-limit", "1e-9"]].concat());
+}

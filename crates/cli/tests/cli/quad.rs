@@ -266,3 +266,17 @@ fn views_need_a_picture_and_turn_it() {
         [picture(&[]), picture(&["--view", "top"]), picture(&["--view", "top", "--up", "z"])];
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
 }
+
+#[test]
+fn small_parts_are_counted() {
+    let folder = Folder::new();
+    let speck = kit::scale(&kit::cube(), 0.01);
+    folder.write_obj("both.obj", &kit::disjoint_union(&[kit::cube(), speck]));
+    let arguments = ["quad", "both.obj", "--quads", "600", "-o", "q.obj"];
+    let run = folder.expect(0, &arguments);
+    let row = "small parts  1 smaller than a cell, of 12 faces: ";
+    assert!(run.stdout.contains(&format!("{row}each with a few cells of its own size")), "{run:?}");
+    let run = folder.expect(0, &[&arguments[..], &["--small-parts", "drop"]].concat());
+    assert!(run.stdout.contains(&format!("{row}left out")), "{run:#?}");
+    assert_eq!(lines_of(&folder.read("q.obj"), "f").len(), 600);
+}

@@ -81,8 +81,8 @@ pub fn followed(
     mesh: &TriMesh,
     map: &SeamlessMap,
     features: &EdgeSet,
+    tolerance: &AlignmentTolerance,
 ) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
-    let tolerance = AlignmentTolerance::default();
     let check = Check { mesh, corner_uvs: map.corner_uvs(), violations: Vec::new() };
     let is_along = |&edge: &Halfedge| {
         let mut sides = std::iter::once(edge).chain(mesh.twin(edge));
@@ -91,7 +91,7 @@ pub fn followed(
     let (along, off): (Vec<Halfedge>, Vec<Halfedge>) =
         features.edges().iter().copied().partition(is_along);
     let kept = EdgeSet::new(mesh, along);
-    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), &tolerance)?;
+    Alignment::certify(mesh, map, &kept.vertex_pairs(mesh), tolerance)?;
     Ok((kept, released(mesh, &off, ReleaseReason::NotInMap)))
 }
 

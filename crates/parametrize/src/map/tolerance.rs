@@ -128,6 +128,14 @@ impl AlignmentTolerance {
         Self::new(axis, Self::default().sector)
     }
 
+    /// That of a map whose seams are within a tolerance: what may be off an edge by a part of its length may turn it as
+    /// much.
+    pub fn of_seams(tolerance: &Tolerance) -> Self {
+        let default = Self::default();
+        let axis = tolerance.seam.to_degrees().min(Self::LARGEST_AXIS);
+        Self { axis: axis.max(default.axis), ..default }
+    }
+
     /// Angle between the image of an edge and the nearer axis, degrees.
     pub fn axis(&self) -> f64 {
         self.axis

@@ -9,6 +9,7 @@ use crate::layout::objective::OptimizeError;
 use crate::map::Violations;
 use crate::progress::{Cancelled, MaybeCancelled, SolveError};
 use seamstress_linalg::NotPositiveDefinite;
+use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::{Component, Vertex};
 
 /// Why a connected mesh has no map.
@@ -104,17 +105,9 @@ pub enum MapError {
         /// The vertex.
         vertex: u32,
     },
-    /// A component could not be mapped.
-    #[error("component {component} (with face {face}): {cause}")]
-    Component {
-        /// The component, in order of first faces.
-        component: usize,
-        /// Its first face.
-        face: u32,
-        /// What failed.
-        #[source]
-        cause: MethodError,
-    },
+    /// Components could not be mapped.
+    #[error("{}", components::listed(.0))]
+    Components(Vec<FailedComponent<MethodError>>),
     /// The field to start from is none of this mesh.
     #[error(transparent)]
     Field(#[from] FieldError),
@@ -135,7 +128,12 @@ pub enum MapError {
 impl MapError {
     /// Whether a component that had to be a disk is none.
     pub fn is_not_a_disk(&self) -> bool {
-        matches!(self, Self::Component { cause: MethodError::Disk(DiskError::NotADisk), .. })
+        self.is_of_a_component(|cause| matches!(cause, MethodError::Disk(DiskError::NotADisk)))
+    }
+
+    /// Whether this is what failed for a component.
+    pub(super) fn is_of_a_component(&self, is: impl Fn(&MethodError) -> bool) -> bool {
+        matches!(self, Self::Components(failed) if failed.iter().any(|part| is(&part.cause)))
     }
 }
 

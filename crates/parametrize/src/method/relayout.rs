@@ -156,8 +156,9 @@ fn run(
         let here = piece.positions(positions);
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
-        let (kept, released) = followed(&piece.mesh, &map, &asked.restrict(piece))
-            .map_err(MethodError::Uncertified)?;
+        let (kept, released) =
+            followed(&piece.mesh, &map, &asked.restrict(piece), &AlignmentTolerance::default())
+                .map_err(MethodError::Uncertified)?;
         outcome.add(piece, &kept, &released);
         improve(piece, &metric, &map, &kept, options, watch)
     })?;
@@ -221,9 +222,8 @@ fn improve(
 impl MapError {
     /// Whether no layout that keeps the bound on the dilatation was found.
     pub fn is_infeasible(&self) -> bool {
-        let Self::Component { cause: MethodError::Objective(cause), .. } = self else {
-            return false;
-        };
-        matches!(cause, OptimizeError::Infeasible { .. })
+        self.is_of_a_component(|cause| {
+            matches!(cause, MethodError::Objective(OptimizeError::Infeasible { .. }))
+        })
     }
 }

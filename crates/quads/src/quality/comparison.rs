@@ -6,7 +6,7 @@ use crate::vector::Point;
 use seamstress_mesh::soup::Fault;
 
 /// How polygons lie to the surface they stand for.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
     /// Distances both ways.

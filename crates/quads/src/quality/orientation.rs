@@ -9,7 +9,7 @@ use seamstress_parallel::prelude::*;
 ///
 /// The normal at a corner is that of the surface at the nearest point: of its face, or the mean over the faces of
 /// its edge or, weighted by their angles, around its vertex.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Orientation {
@@ -22,6 +22,8 @@ pub struct Orientation {
     pub bent: usize,
     /// Corners that turn against the surface's normal there.
     pub turned_corners: usize,
+    /// Each of them: the polygon, and the vertex of its corner, both counted from 0.
+    pub turned: Vec<[u32; 2]>,
 }
 
 /// Why nothing was measured.
@@ -42,7 +44,7 @@ impl Orientation {
         let surface = Surface::new(surface.0, surface.1).map_err(BadSurface)?;
         let normals: Vec<Point> = positions.par_iter().map(|&p| surface.normal(p)).collect();
         let mut found = Self::default();
-        for polygon in polygons {
+        for (polygon, number) in polygons.zip(0u32..) {
             let polygon = listed_from_smallest(polygon);
             let at = |of: &[Point]| polygon.iter().map(|&v| of[v as usize]).collect::<Vec<_>>();
             let one = Self::of_polygon(&at(positions), &at(&normals));
@@ -50,11 +52,12 @@ impl Orientation {
             found.crossed += one.crossed;
             found.bent += one.bent;
             found.turned_corners += one.turned_corners;
+            found.turned.extend(one.turned.iter().map(|&[_, k]| [number, polygon[k as usize]]));
         }
         Ok(found)
     }
 
-    /// Of a single polygon, with the normals of the surface at its corners.
+    /// Of a single polygon, with the normals of the surface at its corners, which are named by their places.
     pub(crate) fn of_polygon(points: &[Point], normals: &[Point]) -> Self {
         let mean = normals.iter().copied().fold([0.0; 3], add);
         let n = points.len();
@@ -64,17 +67,19 @@ impl Orientation {
         };
         let is_inverted = dot(vector_area(points), mean) <= 0.0;
         let is_crossed = n == 4 && is_crossed(points, mean);
+        let turned: Vec<[u32; 2]> = (0..n).filter(|&k| turns(k)).map(|k| [0, k as u32]).collect();
         let has_side = normals.iter().all(|&normal| dot(normal, mean) > 0.0);
         Self {
             inverted: usize::from(is_inverted && has_side),
             crossed: usize::from(is_crossed && has_side),
             bent: usize::from((is_inverted || is_crossed) && !has_side),
-            turned_corners: (0..n).filter(|&k| turns(k)).count(),
+            turned_corners: turned.len(),
+            turned,
         }
     }
 
     /// Polygons that are inverted or crossed, or would be; one that is both counts twice.
-    pub(crate) fn faults(self) -> usize {
+    pub(crate) fn faults(&self) -> usize {
         self.inverted + self.crossed + self.bent
     }
 }
@@ -110,17 +115,30 @@ mod tests {
         assert_eq!(orientation(&square), Orientation::default());
         let mut reversed = square;
         reversed.reverse();
-        let expected = Orientation { inverted: 1, turned_corners: 4, ..Default::default() };
+        let all = vec![[0, 0], [0, 1], [0, 2], [0, 3]];
+        let expected =
+            Orientation { inverted: 1, turned_corners: 4, turned: all, ..Default::default() };
         assert_eq!(orientation(&reversed), expected);
         let dart = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
-        let expected = Orientation { turned_corners: 1, ..Default::default() };
+        let turned = vec![[0, 2]];
+        let expected = Orientation { turned_corners: 1, turned, ..Default::default() };
         assert_eq!(orientation(&dart), expected);
         // More of it the right way round than not.
         let bow = [[0.0, 0.0], [2.0, 0.0], [0.9, 1.0], [1.0, 0.9]];
         assert_eq!(orientation(&bow).crossed, 0);
         let bow = [[0.0, 0.0], [3.0, 0.0], [0.5, 1.0], [2.0, 1.0]];
-        let expected = Orientation { crossed: 1, turned_corners: 2, ..Default::default() };
+        let turned = vec![[0, 2], [0, 3]];
+        let expected = Orientation { crossed: 1, turned_corners: 2, turned, ..Default::default() };
         assert_eq!(orientation(&bow), expected);
+    }
+
+    #[test]
+    fn turned_corners_are_named_by_polygon_and_vertex() {
+        // The reflex corner is vertex 2.
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.2, 0.2, 0.0], [0.0, 1.0, 0.0]];
+        let polygons: [&[u32]; 2] = [&[0, 1, 3], &[3, 0, 1, 2]];
+        let found = Orientation::new(&positions, polygons.into_iter(), (&GROUND, &[[0, 1, 2]]));
+        assert_eq!(found.unwrap().turned, [[1, 2]]);
     }
 
     #[test]
@@ -128,7 +146,7 @@ mod tests {
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
         let of = |normals: [Point; 4]| Orientation::of_polygon(&square, &normals);
-        assert_eq!(of([up, up, up, down]), Orientation { turned_corners: 1, ..Default::default() });
+        assert_eq!(of([up, up, up, down]).turned, [[0, 3]]);
         let bent = of([down, down, down, up]);
         assert_eq!((bent.inverted, bent.crossed, bent.bent), (0, 0, 1));
         assert_eq!(bent.faults(), 1);

@@ -2,7 +2,8 @@
 
 use super::start::{read_corner_uvs, read_cross_field};
 use crate::error::{Error, ErrorKind};
-use crate::features::{FeatureSource, named_edges};
+use crate::feature_edges::named_edges;
+use crate::feature_sources::FeatureSource;
 use crate::field::{EdgeMatching, matchings};
 use crate::report::{SurfaceReport, VERSION};
 use crate::surface::Surface;

@@ -1,0 +1,56 @@
+//! The files that commands write which make quads.
+
+use super::{inputs, targets};
+use crate::failure::Failure;
+use crate::output::{Kind, Plan, Target};
+use seamstress::{Error, QuadMesh, ViewOptions};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The quad mesh, its report and its picture.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct QuadFiles {
+    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
+    /// as OBJ
+    ///
+    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
+    #[arg(short, long, value_name = "QUADS")]
+    output: PathBuf,
+
+    /// Write everything about the run to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+
+    /// Write a picture of the quad mesh with its irregular vertices to this PNG file
+    #[arg(long, value_name = "FILE.png", group = "drawn")]
+    picture: Option<PathBuf>,
+}
+
+impl QuadFiles {
+    pub(super) fn plan<'a>(
+        &self,
+        input: &'a Path,
+        others: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<Plan, Failure> {
+        let mut files = targets(Kind::Picture, &self.picture);
+        files.extend(targets(Kind::Report, &self.report));
+        files.extend(targets(Kind::Quads, [&self.output]));
+        Plan::new(&inputs(input, others), None, files)
+    }
+
+    pub(super) fn pictures(
+        &self,
+        quads: &QuadMesh,
+        view: &ViewOptions,
+    ) -> Result<Vec<Vec<u8>>, Error> {
+        self.picture.iter().map(|_| quads.picture(view)).collect()
+    }
+}
+
+pub(super) fn write(
+    quads: &QuadMesh,
+    target: &Target,
+    mut file: &mut dyn io::Write,
+) -> io::Result<()> {
+    quads.write_as(&target.path, &mut file)
+}
