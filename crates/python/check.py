@@ -18,7 +18,7 @@ FOLDER = ROOT / "target" / "python"
 TOOLS = ["maturin>=1.9,<2"]
 TESTS = ["pytest", "hypothesis"]
 #: What the tests of types, examples and batches use beside.
-ALL = [*TESTS, "mypy", "tqdm", "trimesh", "meshio", "pandas", "pyarrow", "libigl", "scipy", "nbclient", "nbformat", "ipykernel"]
+ALL = [*TESTS, "mypy", "tqdm", "trimesh", "meshio", "pandas", "pyarrow", "libigl", "scipy", "nbclient", "nbformat", "ipykernel", "pillow"]
 if sys.platform == "linux":
     ALL += ["ray"]
 #: The one-line check of a clean environment.
