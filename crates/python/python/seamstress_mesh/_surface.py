@@ -88,7 +88,7 @@ class Surface:
             made = self._native.parametrize(to_json(map_options(options)), run)
         return SeamlessMap._of(self, made)
 
-    @documented("integer", "quads", "edge_length", "scale", "rounding", *_MAP)
+    @documented("integer", "quads", "edge_length", "scale", "rounding", "partial", "small_parts", *_MAP)
     def integer_map(
         self,
         quads: float | None = None,
@@ -96,6 +96,8 @@ class Surface:
         edge_length: float | None = None,
         scale: float | None = None,
         rounding: str | None = None,
+        partial: bool = False,
+        small_parts: str | None = None,
         **options: Unpack[MapOptions],
     ) -> IntegerGridMap:
         """Makes a seamless map whose cones suit the grid, and rounds it to an integer-grid map.
@@ -103,8 +105,9 @@ class Surface:
         One of ``quads``, ``edge_length`` and ``scale`` says how fine the grid is to be. Without ``features`` it follows
         those of ``auto``. Raises ``NoCertifiedMap`` where there is none.
         """
+        parts = chosen(partial=partial, small_parts=small_parts)
         size = grid_size(quads, edge_length, scale)
-        settings = chosen(size=size, rounding=rounding, map=map_options(options))
+        settings = chosen(size=size, rounding=rounding, parts=parts, map=map_options(options))
         with running(options) as run:
             made = self._native.integer_map(to_json(settings), run)
         return IntegerGridMap._of(self, made)
@@ -137,7 +140,7 @@ class Surface:
             made = self._native.integer_map_of(given, certify, to_json(settings), run)
         return IntegerGridMap._of(self, made)
 
-    @documented("quad", "quads", "edge_length", "scale", "raw", "smooth", *_MAP)
+    @documented("quad", "quads", "edge_length", "scale", "raw", "smooth", "partial", "small_parts", *_MAP)
     def quad_mesh(
         self,
         quads: float | None = None,
@@ -146,6 +149,8 @@ class Surface:
         scale: float | None = None,
         raw: bool = False,
         smooth: int = 0,
+        partial: bool = False,
+        small_parts: str | None = None,
         **options: Unpack[MapOptions],
     ) -> QuadMesh:
         """Makes a mesh of quads: a seamless map, rounded to an integer-grid map whose cells are extracted.
@@ -154,8 +159,9 @@ class Surface:
         of ``auto``. Raises ``NoCertifiedMap`` where there is none.
         """
         shape = {"raw": raw, "smooth": smooth}
+        parts = chosen(partial=partial, small_parts=small_parts)
         size = grid_size(quads, edge_length, scale)
-        settings = {"size": size, "shape": shape, "map": map_options(options)}
+        settings = {"size": size, "shape": shape, "parts": parts, "map": map_options(options)}
         with running(options) as run:
             made = self._native.quad_mesh(to_json(settings), run)
         return QuadMesh._of(self, made)
