@@ -18,6 +18,40 @@ pub fn negated(row: &Row) -> Row {
     row.iter().map(|&(k, c)| (k, -c)).collect()
 }
 
+/// Many rows in one place, for products with real points.
+#[derive(Debug, Clone, Default)]
+pub struct Rows {
+    /// Where the entries of each row end.
+    ends: Vec<usize>,
+    columns: Vec<u32>,
+    /// Small whole numbers.
+    values: Vec<f32>,
+}
+
+impl Rows {
+    /// Of some rows.
+    pub fn new<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Self {
+        let mut all = Self::default();
+        for row in rows {
+            all.columns.extend(row.iter().map(|&(k, _)| k as u32));
+            all.values.extend(row.iter().map(|&(_, c)| c as f32));
+            all.ends.push(all.columns.len());
+        }
+        all
+    }
+
+    /// The values of a row at two points, whose coordinates stand side by side.
+    pub fn apply(&self, row: usize, points: &[[f64; 2]]) -> [f64; 2] {
+        let start = if row == 0 { 0 } else { self.ends[row - 1] };
+        let range = start..self.ends[row];
+        let entries = self.columns[range.clone()].iter().zip(&self.values[range]);
+        entries.fold([0.0; 2], |[a, b], (&k, &c)| {
+            let ([x, y], c) = (points[k as usize], f64::from(c));
+            [a + c * x, b + c * y]
+        })
+    }
+}
+
 /// A dense symmetric matrix, row after row.
 #[derive(Debug, Clone)]
 pub struct Dense {

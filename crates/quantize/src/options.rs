@@ -56,13 +56,15 @@ pub struct QuantizeOptions {
     pub tolerance: Tolerance,
     /// Tolerance of the map it is made from, and of the alignment there.
     pub given: Tolerance,
-    /// Roundings of usual size that a component is worth, on all grids. When they are spent, the best map so far is the
-    /// result.
+    /// Passes of roundings, of usual size, that a component is worth on all grids. When they are spent, the best map so far
+    /// is the result.
     pub effort: usize,
+    /// How often the cells asked for may fit into their area that a component gets where they do not fit it, at most.
+    pub finest: f64,
 }
 
-/// Roundings that a component is worth: several times what the hardest meshes measured took.
-const EFFORT: usize = 200;
+/// Passes of roundings that a component is worth: several times what the hardest meshes measured took.
+const EFFORT: usize = 1000;
 
 impl Default for QuantizeOptions {
     fn default() -> Self {
@@ -72,6 +74,7 @@ impl Default for QuantizeOptions {
             tolerance: Tolerance::default(),
             given: Tolerance::default(),
             effort: EFFORT,
+            finest: f64::INFINITY,
         }
     }
 }

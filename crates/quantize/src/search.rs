@@ -34,8 +34,8 @@ const REFINEMENT: f64 = 1.1;
 const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 /// Roundings on one grid, each but the first with the cuts that the one before has taught.
 const MOST_ROUNDINGS: usize = 14;
-/// Constraints times coordinates of a usual rounding; a larger one counts as so many of these, since that is what its time
-/// is proportional to.
+/// Constraints times coordinates of a usual pass of a rounding; a larger one counts as so many of these, since that is what
+/// its time is proportional to.
 const USUAL_ENTRIES: f64 = 5e5;
 /// Cells of a closed component at a minimum, however coarse the grid asked for: those of a cube with two by two on each
 /// side, so that what is smaller than a cell keeps a shape.
@@ -87,7 +87,7 @@ pub(crate) struct ComponentSearch<'a> {
     coarsest: Option<Candidate>,
     /// With the work done so far.
     stats: QuantizationStats,
-    /// Roundings so far, by their size.
+    /// Passes of roundings so far, by their size.
     work: f64,
 }
 
@@ -156,7 +156,9 @@ impl<'a> ComponentSearch<'a> {
             false => FEWEST_CELLS,
         };
         let asked = cell.min(self.layout.side() / fewest.sqrt()) / self.layout.unit;
-        let finer = REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k));
+        let finest = 1.0 / self.options.finest;
+        let finer =
+            REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k)).filter(|&share| share >= finest);
         let n_shares = match &self.coarsest {
             _ if is_greedy => 1,
             Some(_) => FEW_NEARBY,
@@ -164,7 +166,7 @@ impl<'a> ComponentSearch<'a> {
         };
         let (mut first, mut is_hopeless) = (None, false);
         for (k, share) in NEARBY.into_iter().chain(finer).take(n_shares).enumerate() {
-            if is_hopeless && k < NEARBY.len() {
+            if is_hopeless && (k < NEARBY.len() || self.options.finest.is_finite()) {
                 continue;
             }
             if first.is_some() && self.work >= self.options.effort as f64 {
@@ -250,13 +252,15 @@ impl<'a> ComponentSearch<'a> {
         for _ in 0..MOST_ROUNDINGS {
             let clock = Instant::now();
             let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;
-            let rounding = round_near(&problem, start.take(), watch)?;
+            let size = (problem.constraints.len() * problem.mean.len()) as f64 / USUAL_ENTRIES;
+            let size = size.max(1.0);
+            let passes = ((self.options.effort as f64 - self.work) / size).max(1.0) as usize;
+            let rounding = round_near(&problem, start.take(), passes, watch)?;
+            self.work += size * rounding.passes as f64;
             self.stats.roundings += 1;
             self.stats.second_roundings += usize::from(rounding.is_second);
             self.stats.repairs += usize::from(rounding.is_repaired);
             self.stats.constraints = problem.constraints.len();
-            let entries = problem.constraints.len() * problem.mean.len();
-            self.work += (entries as f64 / USUAL_ENTRIES).max(1.0);
             self.stats.seconds_rounding += clock.elapsed().as_secs_f64();
             if rounding.violated.count > 0 {
                 return Err(too_coarse(&problem, &rounding));
@@ -322,6 +326,7 @@ fn in_layout(held: &[i64], h: f64) -> Vec<f64> {
 fn round_near(
     problem: &RoundingProblem<'_>,
     last: Option<Vec<i64>>,
+    passes: usize,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, Cancelled> {
     if let Some(x) = last {
@@ -330,7 +335,7 @@ fn round_near(
             return Ok(near);
         }
     }
-    round(problem, watch)
+    round(problem, passes, watch)
 }
 
 /// Names the lines that a rounding has not kept.

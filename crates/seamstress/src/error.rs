@@ -1,7 +1,7 @@
 //! The one error of this crate.
 
 use crate::finding::{Elements, Finding};
-use crate::parts::FailedPart;
+use crate::words::counted;
 use seamstress_parametrize::Stage as Step;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -361,3 +361,33 @@ impl fmt::Debug for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// A part of a surface that could not be made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct FailedPart {
+    /// Its number among the components of the surface, counted from 0.
+    pub component: u32,
+    /// Its lowest face in the input.
+    pub first_face: u32,
+    /// Its faces in the input.
+    pub faces: usize,
+    /// The code of its error.
+    pub code: &'static str,
+    /// What was being done.
+    pub stage: Option<Stage>,
+    /// What failed.
+    pub message: String,
+    /// The elements it is about, in the ids of the input.
+    pub elements: Elements,
+    /// What may help.
+    pub hint: Option<String>,
+}
+
+impl fmt::Display for FailedPart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let faces = counted(self.faces, "face");
+        write!(f, "component {} ({faces} from face {})", self.component, self.first_face)
+    }
+}

@@ -154,6 +154,12 @@ impl FeatureCurves {
         Self::new(finer, edges, sources)
     }
 
+    /// These curves without some edges.
+    pub(crate) fn without(&self, surface: &Surface, edges: &EdgeSet) -> Self {
+        let mesh = surface.mesh();
+        self.on(surface, self.edges.without(mesh, edges.edges().iter().copied()))
+    }
+
     /// The edges by their ends, vertices of the surface.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.pairs
@@ -264,6 +270,17 @@ impl AlignedFeatures {
         let tolerance = AlignmentTolerance::default();
         self.report.alignment = Some(Alignment::certify(mesh, map, &self.kept, &tolerance)?);
         Ok(self)
+    }
+
+    /// The same as part of more features that were asked for, of which some were given up before.
+    pub(crate) fn among(self, asked: &FeatureCurves, given_up: Vec<ReleasedFeature>) -> Self {
+        let mut dropped = self.dropped;
+        dropped.extend(given_up);
+        let mut report = asked.report.clone();
+        report.kept = Some(self.kept.len());
+        report.dropped = Some(dropped.clone());
+        report.alignment = self.report.alignment;
+        Self { kept: self.kept, dropped, report }
     }
 
     /// The ends of the features that are not aligned.

@@ -2,14 +2,14 @@
 
 use crate::certify::CertifyOptions;
 use crate::context::Watcher;
-use crate::error::{Error, ErrorKind, Stage};
+use crate::error::{Error, ErrorKind, FailedPart, Stage};
 use crate::feature_sources::Features;
 use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of};
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
-use crate::parts::{FailedPart, PartReport, Selection};
+use crate::parts::{PartReport, Selection};
 use crate::quads::FEWER_CONES;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
@@ -169,7 +169,11 @@ impl Surface {
         let made = self.context().run(|watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
             self.integer_parts(&asked, options, watcher, |selection, options, watcher| {
-                selection.surface.make_seamless(selection.curves.clone(), options, watcher)
+                let surface = &selection.surface;
+                let round = |start: &SeamlessStart, settings: &_, watcher: &mut Watcher| {
+                    Ok(surface.make_integer(start, settings, watcher)?)
+                };
+                surface.make_gridded(&selection.curves, options, watcher, round)
             })
         });
         made.map_err(|error| error.of(self.input()))
@@ -196,14 +200,18 @@ impl Surface {
             // Of all components, also of those that are left out.
             self.seamless_map(corner_uvs.clone(), certify)?;
             let asked = self.features(&options.map.features)?;
-            self.integer_parts(&asked, options, watcher, |selection, options, _| {
+            self.integer_parts(&asked, options, watcher, |selection, options, watcher| {
                 let (surface, curves) = (&selection.surface, selection.curves.clone());
                 let map = surface.seamless_map(selection.corner_uvs(&corner_uvs), certify)?;
                 let is_asked = !options.map.features.is_none();
                 let tolerance = certify.seam_tolerance()?;
                 let followed = || surface.followed(&map, curves, &tolerance);
                 let features = is_asked.then(followed).transpose()?;
-                Ok(SeamlessStart { map, features, tolerance })
+                let start = SeamlessStart { map, features, tolerance };
+                let made = surface.make_integer(&start, &options.to_quantize(), watcher);
+                let made =
+                    made.map_err(|cause| surface.no_integer_map(&cause, options.rounding))?;
+                Ok((start, made))
             })
         });
         made.map_err(|error| error.of(self.input()))
@@ -215,13 +223,16 @@ impl Surface {
         asked: &FeatureCurves,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
-        start: impl Fn(&Selection, &IntegerMapOptions, &mut Watcher) -> Result<SeamlessStart, Error>,
+        make: impl Fn(
+            &Selection,
+            &IntegerMapOptions,
+            &mut Watcher,
+        ) -> Result<(SeamlessStart, Quantization), Error>,
     ) -> Result<IntegerGridMap, Error> {
         let made = self.make_parts(asked, options.size, options.parts, |selection, size| {
             let options = IntegerMapOptions { size, ..options.clone() };
-            let start = start(selection, &options, watcher)?;
+            let (start, solution) = make(selection, &options, watcher)?;
             let surface = &selection.surface;
-            let solution = surface.make_integer(&start, &options, watcher)?;
             let features = start
                 .features
                 .map(|features| features.certified_in(surface.mesh(), solution.map.seamless()));
@@ -272,15 +283,13 @@ impl Surface {
     pub(crate) fn make_integer(
         &self,
         start: &SeamlessStart,
-        options: &IntegerMapOptions,
+        settings: &QuantizeOptions,
         watcher: &mut Watcher,
-    ) -> Result<Quantization, Error> {
+    ) -> Result<Quantization, QuantizeError> {
         let kept = start.kept(self.mesh());
         let mut observe = |progress| watcher.observe(progress);
-        let map = &start.map;
-        let settings = QuantizeOptions { given: start.tolerance, ..options.to_quantize() };
-        quantize(self.mesh(), self.positions(), map, &kept, &settings, &mut observe)
-            .map_err(|cause| self.no_integer_map(&cause, options.rounding))
+        let settings = QuantizeOptions { given: start.tolerance, ..*settings };
+        quantize(self.mesh(), self.positions(), &start.map, &kept, &settings, &mut observe)
     }
 
     /// Why a map could not be rounded, with the elements that it names.

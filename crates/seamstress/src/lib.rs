@@ -63,6 +63,7 @@ mod finding;
 #[cfg(feature = "io")]
 mod given;
 mod grid_size;
+mod gridded;
 mod inspection;
 mod integer;
 #[cfg(feature = "lab")]
@@ -87,7 +88,7 @@ pub mod words;
 
 pub use certify::{CertifyOptions, Measurements, Verdict};
 pub use context::{CancelToken, Context, Progress};
-pub use error::{Error, ErrorCategory, ErrorKind, Stage};
+pub use error::{Error, ErrorCategory, ErrorKind, FailedPart, Stage};
 pub use feature_sources::{FeatureSource, Features};
 pub use features::{FeatureCurve, FeatureCurves, FeatureNode, FeatureReport, FeatureSourceReport};
 pub use field::{CrossField, EdgeMatching, FieldLoop, FieldReport, FullTurns};
@@ -110,7 +111,7 @@ pub use map::{MapReport, SeamlessMap};
 pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
-pub use parts::{FailedPart, PartOptions, PartReport, SmallParts};
+pub use parts::{PartOptions, PartReport, SmallParts};
 #[cfg(feature = "render")]
 pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};
 pub use quads::{

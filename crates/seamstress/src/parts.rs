@@ -1,6 +1,6 @@
 //! The connected parts of a surface: which are left out, and which fail.
 
-use crate::error::{Error, ErrorKind, Stage};
+use crate::error::{Error, ErrorKind, FailedPart};
 use crate::features::{FeatureCurves, FeatureReport, edges_of};
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
@@ -10,7 +10,6 @@ use seamstress_mesh::components::{Component, FailedComponent, components};
 use seamstress_quads::Extraction;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 /// A closed part with the area of fewer cells than a cube of one cell on each side is smaller than a cell.
 const FEWEST_CELLS: f64 = 6.0;
@@ -61,36 +60,6 @@ pub struct PartReport {
     pub small_left_out: bool,
     /// Parts that failed, and were left out.
     pub failed: Vec<FailedPart>,
-}
-
-/// A part of a surface that could not be made.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct FailedPart {
-    /// Its number among the components of the surface, counted from 0.
-    pub component: u32,
-    /// Its lowest face in the input.
-    pub first_face: u32,
-    /// Its faces in the input.
-    pub faces: usize,
-    /// The code of its error.
-    pub code: &'static str,
-    /// What was being done.
-    pub stage: Option<Stage>,
-    /// What failed.
-    pub message: String,
-    /// The elements it is about, in the ids of the input.
-    pub elements: Elements,
-    /// What may help.
-    pub hint: Option<String>,
-}
-
-impl fmt::Display for FailedPart {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let faces = counted(self.faces, "face");
-        write!(f, "component {} ({faces} from face {})", self.component, self.first_face)
-    }
 }
 
 impl Surface {

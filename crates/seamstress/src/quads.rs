@@ -6,7 +6,7 @@ use crate::feature_sources::Features;
 use crate::features::FeatureReport;
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
-use crate::integer::GridReport;
+use crate::integer::{GridReport, SeamlessStart};
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::{PartReport, Selection};
 use crate::refined::Workpiece;
@@ -318,12 +318,13 @@ impl Selection {
         let edge_length = size.to_quantize().cell(self.surface.metric().side());
         let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length)?;
         let surface = &work.surface;
-        let start = surface.make_seamless(work.curves.clone(), &integer, watcher)?;
-        let (kept, settings) = (start.kept(surface.mesh()), integer.to_quantize());
-        let mut observe = |progress| watcher.observe(progress);
-        let (mesh, positions, map) = (surface.mesh(), surface.positions(), &start.map);
-        let made = manifold_quads(mesh, positions, map, &kept, &settings, &mut observe)
-            .map_err(|cause| surface.no_manifold(cause, &integer))?;
+        let (mesh, positions) = (surface.mesh(), surface.positions());
+        let round = |start: &SeamlessStart, settings: &_, watcher: &mut Watcher| {
+            let (map, kept) = (&start.map, start.kept(mesh));
+            let mut observe = |progress| watcher.observe(progress);
+            manifold_quads(mesh, positions, map, &kept, settings, &mut observe)
+        };
+        let (start, made) = surface.make_gridded(&work.curves, &integer, watcher, round)?;
         let ManifoldQuads { quantization: solution, mut extraction, connectivity, .. } = made;
         let features = start.features.map(|f| f.certified_in(mesh, solution.map.seamless()));
         let features = features.transpose().map_err(|v| surface.misaligned(&v))?;
@@ -518,7 +519,7 @@ impl Surface {
     }
 
     /// Why there are no quads that are a manifold.
-    fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
+    pub(crate) fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
         match cause {
             ManifoldError::Quantize(cause) => self.no_integer_map(&cause, options.rounding),
             ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),

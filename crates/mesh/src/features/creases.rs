@@ -81,6 +81,9 @@ const ROUND: usize = 6;
 /// finer than the grid: the steps of voxels, for instance, for two thirds of it. Those of CAD models do for a third at most.
 const FINE: f64 = 1.5;
 
+/// Creases between crossings that are closer than so many cells are details that the grid has no room for.
+const DETAIL: f64 = 0.5;
+
 /// Most flat faces of a polyhedron. Coarse organic shapes have some hundred.
 const MOST_FACES: usize = 40;
 
@@ -93,6 +96,7 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let shape = Shape::new(mesh, positions, metric);
     let found = shape.clear_chains();
     let found = shape.through_gaps(&found);
+    let found = shape.without_details(found, cell);
     let found = shape.without_short_ends(found, cell);
     let found = shape.without_specks(&found, cell);
     shape.of_polyhedra(&found)
@@ -285,6 +289,34 @@ impl<'a> Shape<'a> {
         }
     }
 
+    /// Removes chains between crossings that are much shorter than a cell, the shortest first, until there are none: what
+    /// they have cut in pieces hangs together then.
+    fn without_details(&self, mut creases: EdgeSet, cell: f64) -> EdgeSet {
+        loop {
+            let chains = FeatureGraph::chains(self.mesh, self.metric, &creases).curves;
+            let open = chains.iter().filter(|chain| !chain.is_loop);
+            let short: Vec<(f64, &Curve)> = open
+                .map(|chain| (self.length(&chain.edges), chain))
+                .filter(|&(length, _)| length < DETAIL * cell)
+                .collect();
+            let mut shortest = VertexData::filled(self.mesh.n_vertices(), f64::INFINITY);
+            for &(length, chain) in &short {
+                for &end in chain_ends(chain) {
+                    shortest[end] = shortest[end].min(length);
+                }
+            }
+            let is_shortest = |&&(length, chain): &&(f64, &Curve)| {
+                chain_ends(chain).all(|&end| length <= shortest[end])
+            };
+            let removed = short.iter().filter(is_shortest).flat_map(|(_, chain)| &chain.edges);
+            let removed: Vec<Halfedge> = removed.copied().collect();
+            if removed.is_empty() {
+                return creases;
+            }
+            creases = creases.without(self.mesh, removed);
+        }
+    }
+
     /// Removes creases that hang together and are specks, or finer than the grid.
     fn without_specks(&self, creases: &EdgeSet, cell: f64) -> EdgeSet {
         let chains = FeatureGraph::chains(self.mesh, self.metric, creases).curves;
@@ -343,6 +375,11 @@ impl<'a> Shape<'a> {
         }
         groups
     }
+}
+
+/// The first and the last vertex of a chain.
+fn chain_ends(chain: &Curve) -> impl Iterator<Item = &Vertex> {
+    chain.vertices.first().into_iter().chain(chain.vertices.last())
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {

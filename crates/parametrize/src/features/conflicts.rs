@@ -23,6 +23,8 @@ pub enum ReleaseReason {
     NoLayout,
     /// The map that was given does not follow it.
     NotInMap,
+    /// Lines of the grid asked for would meet there that have to stay apart.
+    Crowded,
 }
 
 impl std::fmt::Display for ReleaseReason {
@@ -33,6 +35,7 @@ impl std::fmt::Display for ReleaseReason {
             Self::Cap => "too few triangles between two feature edges",
             Self::NoLayout => "no layout near it",
             Self::NotInMap => "the map given does not follow it",
+            Self::Crowded => "too close to others for the grid",
         })
     }
 }

@@ -23,11 +23,12 @@ const MAP_BOUNDS: [(f64, f64); 2] = [(f64::INFINITY, 1.5), (0.35, 1.5)];
 const QUAD_BOUNDS: [(f64, f64); 3] = [(f64::INFINITY, 3.5), (f64::INFINITY, 1.5), (0.35, 3.5)];
 /// The surrogate is less reliable between features, so bolder proposals mostly fail there.
 const ALIGNED_BOUNDS: [(f64, f64); 1] = [(0.35, 1.5)];
+/// For quads one is worth trying: stairs between features go at once.
+const ALIGNED_QUAD_BOUNDS: [(f64, f64); 2] = [QUAD_BOUNDS[0], ALIGNED_BOUNDS[0]];
 
-/// What tau and the excess of the energy over 4 may grow by with fewer cones: for a map that is an end in itself, and for
-/// quads, to which a few distorted triangles do not matter.
+/// What tau and the excess of the energy over 4 may grow by with fewer cones, for a map that is an end in itself; to quads a
+/// few distorted triangles do not matter.
 const MAP_GROWTH: [f64; 2] = [1.05, 1.2];
-const QUAD_GROWTH: [f64; 2] = [f64::INFINITY; 2];
 
 /// What fewer cones may cost.
 pub(super) struct CleanUpTerms {
@@ -36,24 +37,25 @@ pub(super) struct CleanUpTerms {
     count: ConeCount,
     bounds: &'static [(f64, f64)],
     effort: LayoutEffort,
-    /// Tau may rise by this factor, and the excess of the energy over 4.
-    growth: [f64; 2],
+    /// Tau may rise by this factor, and the excess of the energy over 4; none if by any.
+    growth: Option<[f64; 2]>,
 }
 
 impl CleanUpTerms {
     /// Those of a component; none if its cones stay as they were rounded.
     pub(super) fn new(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> Option<Self> {
         let (usual_price, bounds, count, growth) = match options.purpose {
-            Purpose::Texture => (MAP_PRICE, &MAP_BOUNDS[..], ConeCount::Cones, MAP_GROWTH),
+            Purpose::Texture => (MAP_PRICE, &MAP_BOUNDS[..], ConeCount::Cones, Some(MAP_GROWTH)),
             Purpose::Quads { edge_length } => {
                 let cell = (edge_length / domain.surface.side()).powi(2).min(1.0 / FEWEST_CELLS);
                 let price = QUAD_PRICE.max(QUAD_CELLS * cell);
-                (price, &QUAD_BOUNDS[..], ConeCount::Quarters, QUAD_GROWTH)
+                (price, &QUAD_BOUNDS[..], ConeCount::Quarters, None)
             }
         };
-        let (bounds, effort) = match domain.any_aligned() {
-            true => (&ALIGNED_BOUNDS[..], LayoutEffort::Brief),
-            false => (bounds, LayoutEffort::Thorough),
+        let (bounds, effort) = match (domain.any_aligned(), options.purpose) {
+            (true, Purpose::Texture) => (&ALIGNED_BOUNDS[..], LayoutEffort::Brief),
+            (true, Purpose::Quads { .. }) => (&ALIGNED_QUAD_BOUNDS[..], LayoutEffort::Brief),
+            (false, _) => (bounds, LayoutEffort::Thorough),
         };
         let price = options.cone_price.unwrap_or(usual_price);
         let is_wanted = price > 0.0 && start.leaves_cones_free();
@@ -63,9 +65,11 @@ impl CleanUpTerms {
     /// Whether a layout with fewer cones is worth its price.
     fn accept(&self, before: &RelaxedLayout, after: &RelaxedLayout, saved: i32) -> bool {
         let excess = |f: &RelaxedLayout| f.symmetric_dirichlet - 4.0;
+        let is_within = |[tau, energy]: [f64; 2]| {
+            after.tau <= tau * before.tau && excess(after) <= energy * excess(before)
+        };
         excess(after) < excess(before) + self.price * f64::from(saved)
-            && excess(after) <= self.growth[1] * excess(before)
-            && after.tau <= self.growth[0] * before.tau
+            && self.growth.is_none_or(is_within)
     }
 }
 

@@ -83,6 +83,12 @@ impl Conditional {
         (0..self.mean.len()).map(|i| apply(row, self.covariance.row(i))).collect()
     }
 
+    /// Variance of the value of a row.
+    pub fn variance(&self, row: &Row) -> f64 {
+        let spread = |&(k, c): &(usize, i64)| c as f64 * apply(row, self.covariance.row(k));
+        row.iter().map(spread).sum()
+    }
+
     /// Adds a condition whose effect is [`Effect::Free`].
     pub fn fix(&mut self, row: &Row, value: i64, reduced: Vec<i64>, pivot: usize) {
         let n = self.covariance.order;

@@ -2,7 +2,7 @@
 
 use super::conditional::{Conditional, Effect};
 use super::problem::{Constraint, RoundingProblem};
-use crate::linear::{Row, apply};
+use crate::linear::{Rows, apply};
 use seamstress_parallel::prelude::*;
 
 /// Values tried for a connection, the cheapest first.
@@ -19,6 +19,8 @@ const DETERMINED: f64 = 1e-9;
 /// Connections being fixed, with the mean and the variance of each under the conditions so far.
 pub(super) struct Fixing<'a> {
     problem: &'a RoundingProblem<'a>,
+    /// Both rows of every connection.
+    rows: Rows,
     /// The joint constraint that each one is a member of.
     memberships: Vec<Option<usize>>,
     now: Conditional,
@@ -28,34 +30,36 @@ pub(super) struct Fixing<'a> {
     determined: f64,
 }
 
-/// One of the two rows of a connection that is about to be fixed.
-struct Part {
-    effect: Effect,
-    /// Covariance with both rows of every connection, given the part before.
-    coupling: Vec<[f64; 2]>,
-    variance: f64,
+/// What fixing the two rows of a connection, one after the other, would do.
+struct Parts {
+    effects: [Effect; 2],
+    /// Of each row, that of the second given the first.
+    variances: [f64; 2],
+    /// Covariance of both rows of every connection with the first row, and with the second given the first.
+    couplings: Vec<[[f64; 2]; 2]>,
 }
 
-impl Part {
-    /// How the value of a connection moves when this part is raised by one.
-    fn gain(&self, j: usize) -> [f64; 2] {
-        match self.effect {
-            Effect::Free { .. } => self.coupling[j].map(|c| c / self.variance),
+impl Parts {
+    /// How the value of a connection moves when each part is raised by one.
+    fn gains(&self, j: usize) -> [[f64; 2]; 2] {
+        let gain = |part: usize| match self.effects[part] {
+            Effect::Free { .. } => self.couplings[j].map(|c| c[part] / self.variances[part]),
             _ => [0.0; 2],
-        }
+        };
+        [gain(0), gain(1)]
     }
 
-    /// By how much fixing this part lowers the variance of a connection.
-    fn settles(&self, j: usize) -> f64 {
-        let [gain, c] = [self.gain(j), self.coupling[j]];
-        gain[0] * c[0] + gain[1] * c[1]
+    /// By how much fixing both lowers the variance of a connection.
+    fn settles(&self, j: usize) -> [f64; 2] {
+        let (gains, [u, v]) = (self.gains(j), self.couplings[j]);
+        [0, 1].map(|part| gains[part][0] * u[part] + gains[part][1] * v[part])
     }
 }
 
 /// A value for a connection and what it does to the others.
 pub(super) struct Choice {
     connection: usize,
-    parts: [Part; 2],
+    parts: Parts,
     value: [i64; 2],
 }
 
@@ -64,13 +68,13 @@ impl<'a> Fixing<'a> {
         let start = Conditional::new(problem.energy.covariance.clone(), problem.mean.clone());
         let constraints = &problem.constraints;
         let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
-        let variance =
-            |c: &Constraint| c.rows.iter().map(|row| apply(row, &start.spread(row))).sum::<f64>();
+        let variance = |c: &Constraint| c.rows.iter().map(|row| start.variance(row)).sum();
         Self {
             problem,
-            memberships: problem.memberships(),
+            rows: Rows::new(constraints.iter().flat_map(|constraint| &constraint.rows)),
             means: constraints.iter().map(mean).collect(),
             variances: constraints.par_iter().map(variance).collect(),
+            memberships: problem.memberships(),
             determined: DETERMINED * start.mean_variance(),
             now: start,
         }
@@ -100,11 +104,14 @@ impl<'a> Fixing<'a> {
     pub(super) fn choose(&self, i: usize) -> Option<Choice> {
         let problem = self.problem;
         let parts = self.parts(i);
-        if parts.iter().any(|part| matches!(part.effect, Effect::NoUnit)) {
+        if parts.effects.iter().any(|effect| matches!(effect, Effect::NoUnit)) {
             return None;
         }
         // Which connections get determined does not depend on the value.
-        let left = |j: usize| self.variances[j] - parts[0].settles(j) - parts[1].settles(j);
+        let left = |j: usize| {
+            let [first, second] = parts.settles(j);
+            self.variances[j] - first - second
+        };
         let all = 0..problem.constraints.len();
         let is_determined: Vec<bool> = all.map(|j| left(j) <= self.determined).collect();
         let is_new = |&j: &usize| is_determined[j] && self.is_open(j);
@@ -114,7 +121,7 @@ impl<'a> Fixing<'a> {
         let is_possible = |value: &[i64; 2]| {
             let errors = self.errors(i, &parts, *value);
             let fits = |part: usize| {
-                matches!(parts[part].effect, Effect::Free { .. }) || errors[part].abs() < SAME
+                matches!(parts.effects[part], Effect::Free { .. }) || errors[part].abs() < SAME
             };
             let at = |j: usize| self.moved(j, &parts, errors);
             let known = |j: usize| is_determined[j].then(|| at(j));
@@ -136,63 +143,58 @@ impl<'a> Fixing<'a> {
         let errors = self.errors(connection, &parts, value);
         for j in 0..self.problem.constraints.len() {
             self.means[j] = self.moved(j, &parts, errors);
-            self.variances[j] -= parts[0].settles(j) + parts[1].settles(j);
+            self.variances[j] -= parts.settles(j).iter().sum::<f64>();
         }
         let rows = &self.problem.constraints[connection].rows;
-        for ((part, row), value) in parts.into_iter().zip(rows).zip(value) {
-            if let Effect::Free { reduced, pivot } = part.effect {
+        for ((effect, row), value) in parts.effects.into_iter().zip(rows).zip(value) {
+            if let Effect::Free { reduced, pivot } = effect {
                 self.now.fix(row, value, reduced, pivot);
             }
         }
     }
 
     /// What fixing the two rows of a connection, one after the other, would do.
-    fn parts(&self, i: usize) -> [Part; 2] {
+    fn parts(&self, i: usize) -> Parts {
         let rows = &self.problem.constraints[i].rows;
-        let spread = self.now.spread(&rows[0]);
+        let [first, mut second] = rows.each_ref().map(|row| self.now.spread(row));
         let effect = self.now.effect(&rows[0], None);
-        let first = self.part(&rows[0], effect, &spread);
-        let mut spread_after = self.now.spread(&rows[1]);
-        let effect = self.now.effect(&rows[1], Some(&first.effect));
-        if matches!(first.effect, Effect::Free { .. }) {
-            let gain = apply(&rows[1], &spread) / first.variance;
-            spread_after.iter_mut().zip(&spread).for_each(|(s, before)| *s -= gain * before);
+        let effects = [effect.clone(), self.now.effect(&rows[1], Some(&effect))];
+        let variance = apply(&rows[0], &first);
+        if matches!(effect, Effect::Free { .. }) {
+            let gain = apply(&rows[1], &first) / variance;
+            second.iter_mut().zip(&first).for_each(|(s, before)| *s -= gain * before);
         }
-        let second = self.part(&rows[1], effect, &spread_after);
-        [first, second]
-    }
-
-    fn part(&self, row: &Row, effect: Effect, spread: &[f64]) -> Part {
+        let variances = [variance, apply(&rows[1], &second)];
+        let spreads: Vec<[f64; 2]> = first.into_iter().zip(second).map(Into::into).collect();
         // What is determined has no covariance with anything.
-        let coupling = |(i, &variance): (usize, &f64)| match variance > self.determined {
-            true => self.problem.constraints[i].rows.each_ref().map(|row| apply(row, spread)),
-            false => [0.0; 2],
+        let coupling = |(j, &variance): (usize, &f64)| match variance > self.determined {
+            true => [2 * j, 2 * j + 1].map(|row| self.rows.apply(row, &spreads)),
+            false => [[0.0; 2]; 2],
         };
-        let coupling =
-            self.variances.par_iter().enumerate().with_min_len(CHUNK).map(coupling).collect();
-        Part { effect, coupling, variance: apply(row, spread) }
+        let all = self.variances.par_iter().enumerate().with_min_len(CHUNK);
+        Parts { effects, variances, couplings: all.map(coupling).collect() }
     }
 
     /// How far a value is from the mean of the first row, and then from that of the second.
-    fn errors(&self, i: usize, parts: &[Part; 2], value: [i64; 2]) -> [f64; 2] {
+    fn errors(&self, i: usize, parts: &Parts, value: [i64; 2]) -> [f64; 2] {
         let first = value[0] as f64 - self.means[i][0];
-        let second = value[1] as f64 - self.means[i][1] - parts[0].gain(i)[1] * first;
+        let second = value[1] as f64 - self.means[i][1] - parts.gains(i)[0][1] * first;
         [first, second]
     }
 
     /// The mean of a connection after fixing.
-    fn moved(&self, j: usize, parts: &[Part; 2], errors: [f64; 2]) -> [f64; 2] {
-        let [a, b] = [parts[0].gain(j), parts[1].gain(j)];
+    fn moved(&self, j: usize, parts: &Parts, errors: [f64; 2]) -> [f64; 2] {
+        let [a, b] = parts.gains(j);
         [0, 1].map(|k| self.means[j][k] + a[k] * errors[0] + b[k] * errors[1])
     }
 
     /// Allowed values of a connection near the one it has, by the energy they cost.
-    fn candidates(&self, i: usize, parts: &[Part; 2]) -> Vec<[i64; 2]> {
+    fn candidates(&self, i: usize, parts: &Parts) -> Vec<[i64; 2]> {
         let constraint = &self.problem.constraints[i];
         let [u, v] = self.means[i].map(|x| x.round() as i64);
         let cost = |value: [i64; 2]| {
             let errors = self.errors(i, parts, value);
-            let of = |k: usize| errors[k] * errors[k] / parts[k].variance.max(self.determined);
+            let of = |k: usize| errors[k] * errors[k] / parts.variances[k].max(self.determined);
             of(0) + of(1)
         };
         let mut values: Vec<[i64; 2]> = (-REACH..=REACH)

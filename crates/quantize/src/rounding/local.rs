@@ -77,6 +77,8 @@ struct Area<'a> {
     value: f64,
     gradient: Vec<f64>,
     cost: SizeCost,
+    /// The cost there.
+    now: f64,
 }
 
 impl<'a> Area<'a> {
@@ -85,7 +87,8 @@ impl<'a> Area<'a> {
         let at: Vec<f64> = x.iter().map(|&x| x as f64).collect();
         let slope = form.matrix.multiply(&at);
         let gradient = problem.energy.basis.vectors.iter().map(|row| apply(row, &slope)).collect();
-        Some(Self { form, value: form.at(&at), gradient, cost: problem.size_cost() })
+        let (value, cost) = (form.at(&at), problem.size_cost());
+        Some(Self { form, value, gradient, cost, now: cost.at(value) })
     }
 
     /// Change of the area by a single step.
@@ -95,11 +98,12 @@ impl<'a> Area<'a> {
 
     /// Change of the cost by a change of the area.
     fn cost_of(&self, change: f64) -> f64 {
-        self.cost.at(self.value + change) - self.cost.at(self.value)
+        self.cost.at(self.value + change) - self.now
     }
 
     fn take(&mut self, (k, step): Step) {
         self.value += self.change((k, step));
+        self.now = self.cost.at(self.value);
         let row = self.form.in_basis.row(k);
         self.gradient.iter_mut().zip(row).for_each(|(g, f)| *g += step as f64 * f);
     }
@@ -131,14 +135,24 @@ impl<'a> LocalSearch<'a> {
         self.problem.constraints[i].shortage(value.map(|x| x as f64))
     }
 
-    /// One if a joint constraint is violated when some displacements, in ascending order, take other values.
-    fn joint_shortage(&self, joint: usize, changed: &[(usize, [i64; 2])]) -> i64 {
+    /// The value of a constraint after some steps.
+    fn value_after(&self, i: usize, steps: &[Step]) -> [i64; 2] {
+        steps.iter().fold(self.values[i], |[u, v], &(k, step)| {
+            match self.moved[k].binary_search_by_key(&i, |&(j, _)| j) {
+                Ok(at) => {
+                    let [a, b] = self.moved[k][at].1;
+                    [u + step * a, v + step * b]
+                }
+                Err(_) => [u, v],
+            }
+        })
+    }
+
+    /// One if a joint constraint is violated after some steps.
+    fn joint_shortage(&self, joint: usize, steps: &[Step]) -> i64 {
         let (members, rule) = &self.problem.joint[joint];
-        let holds = rule.allows(members.clone().map(|i| {
-            let new = changed.binary_search_by_key(&i, |&(j, _)| j).map(|at| changed[at].1);
-            Some(new.unwrap_or(self.values[i]).map(|x| x as f64))
-        }));
-        i64::from(!holds)
+        let at = |i: usize| Some(self.value_after(i, steps).map(|x| x as f64));
+        i64::from(!rule.allows(members.clone().map(at)))
     }
 
     fn shortage_now(&self, constraint: usize) -> i64 {
@@ -159,59 +173,51 @@ impl<'a> LocalSearch<'a> {
         self.problem.energy.basis.matrix.row(k)[k] + step as f64 * self.gradient[k]
     }
 
-    /// Change of the energy by two steps along different vectors.
-    fn cost_of_pair(&self, a: Step, b: Step) -> f64 {
+    /// Change of the energy by two steps along different vectors, if it is below a limit.
+    fn cost_of_pair(&self, a: Step, b: Step, limit: f64) -> Option<f64> {
         let sign = (a.1 * b.1) as f64;
         let coupling = 2.0 * sign * self.problem.energy.basis.matrix.row(a.0)[b.0];
-        let size = self.area.as_ref().map_or(0.0, |area| {
-            let coupling = sign * area.form.in_basis.row(a.0)[b.0];
-            area.cost_of(area.change(a) + area.change(b) + coupling)
+        let shape = self.cost_of_shape(a) + self.cost_of_shape(b) + coupling;
+        let Some(area) = &self.area else { return (shape < limit).then_some(shape) };
+        // At best, no area is missed any more.
+        if shape - area.now >= limit {
+            return None;
+        }
+        let coupling = sign * area.form.in_basis.row(a.0)[b.0];
+        let cost = shape + area.cost_of(area.change(a) + area.change(b) + coupling);
+        (cost < limit).then_some(cost)
+    }
+
+    /// By how much more each constraint is violated after one or two steps, as far as they change it.
+    fn rises(&self, steps: &[Step]) -> impl Iterator<Item = (usize, i64)> {
+        let lists = [steps.first(), steps.get(1)]
+            .map(|step| step.map_or((&[][..], 0), |&(k, step)| (&self.moved[k][..], step)));
+        let single = Merged { lists }.map(|(i, [a, b])| {
+            let [u, v] = self.values[i];
+            (i, self.shortage(i, [u + a, v + b]) - self.shortage(i, [u, v]))
         });
-        self.cost_of_shape(a) + self.cost_of_shape(b) + coupling + size
-    }
-
-    /// The constraints that some steps change, and their new values.
-    fn changed(&self, steps: &[Step]) -> Displacements {
-        let mut all = Displacements::new();
-        for &(k, step) in steps {
-            all.extend(self.moved[k].iter().map(|&(i, [u, v])| (i, [step * u, step * v])));
-        }
-        all.sort_unstable();
-        let sum = |group: &[(usize, [i64; 2])]| {
-            let start = (group[0].0, self.values[group[0].0]);
-            group.iter().fold(start, |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
-        };
-        all.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
-    }
-
-    /// What is violated after some steps, and by how much its weight rises.
-    fn after(&self, steps: &[Step], weight: impl Fn(usize) -> f64) -> (i64, f64) {
-        let changed = self.changed(steps);
-        let mut joint: Vec<usize> =
-            changed.iter().filter_map(|(i, _)| self.memberships[*i]).collect();
-        joint.dedup();
-        let (mut count, mut rise) = (self.violated, 0.0);
-        let mut note = |more: i64, constraint: usize| {
-            (count, rise) = (count + more, rise + more as f64 * weight(constraint));
-        };
-        for &(i, value) in &changed {
-            note(self.shortage(i, value) - self.shortage(i, self.values[i]), i);
-        }
-        for k in joint {
-            let more = self.joint_shortage(k, &changed) - self.joint_shortage(k, &[]);
-            note(more, self.values.len() + k);
-        }
-        (count, rise)
+        // The members of a joint constraint are neighbours.
+        let mut last = None;
+        let joint = Merged { lists }.filter_map(move |(i, _)| {
+            let joint = self.memberships[i].filter(|&joint| last != Some(joint))?;
+            last = Some(joint);
+            let more = self.joint_shortage(joint, steps) - self.joint_shortage(joint, &[]);
+            Some((self.values.len() + joint, more))
+        });
+        single.chain(joint)
     }
 
     fn violated_after(&self, steps: &[Step]) -> i64 {
-        self.after(steps, |_| 0.0).0
+        self.rises(steps).fold(self.violated, |sum, (_, more)| sum + more)
     }
 
     fn take(&mut self, steps: &[Step]) {
         self.violated = self.violated_after(steps);
-        for (i, value) in self.changed(steps) {
-            self.values[i] = value;
+        for &(k, step) in steps {
+            for &(i, [a, b]) in &self.moved[k] {
+                let [u, v] = self.values[i];
+                self.values[i] = [u + step * a, v + step * b];
+            }
         }
         let basis = &self.problem.energy.basis;
         for &(k, step) in steps {
@@ -237,8 +243,12 @@ impl<'a> LocalSearch<'a> {
 
     /// Whether steps of this energy pay.
     fn pays(&self, cost: f64, steps: &[Step]) -> bool {
+        let is_cheaper = cost < -self.gain;
+        if self.violated == 0 {
+            return is_cheaper && self.rises(steps).all(|(_, more)| more <= 0);
+        }
         let after = self.violated_after(steps);
-        after < self.violated || (after == self.violated && cost < -self.gain)
+        after < self.violated || (after == self.violated && is_cheaper)
     }
 
     /// The first single step that pays, the cheapest first.
@@ -266,10 +276,8 @@ impl<'a> LocalSearch<'a> {
             for step in [1, -1] {
                 for j in (0..i).filter(|&j| is_involved[i] || is_involved[j]) {
                     for other in [1, -1] {
-                        let cost = self.cost_of_pair((i, step), (j, other));
-                        if cost < limit {
-                            pairs.push((cost, [(j, other), (i, step)]));
-                        }
+                        let cost = self.cost_of_pair((i, step), (j, other), limit);
+                        pairs.extend(cost.map(|cost| (cost, [(j, other), (i, step)])));
                     }
                 }
             }
@@ -281,8 +289,12 @@ impl<'a> LocalSearch<'a> {
             pairs.truncate(TRIED);
         }
         pairs.sort_by(order);
-        let worth = pairs.into_iter().filter(|(cost, steps)| self.pays(*cost, steps));
-        worth.min_by_key(|(_, steps)| self.violated_after(steps)).map(|(_, steps)| steps.to_vec())
+        let mut worth = pairs.into_iter().filter(|(cost, steps)| self.pays(*cost, steps));
+        let best = match is_valid {
+            true => worth.next(),
+            false => worth.min_by_key(|(_, steps)| self.violated_after(steps)),
+        };
+        best.map(|(_, steps)| steps.to_vec())
     }
 
     /// Looks at one violated constraint after the other and takes the step among those that move it that
@@ -309,7 +321,8 @@ impl<'a> LocalSearch<'a> {
             };
             let steps = members.flat_map(|i| &touching[i]).flat_map(|&k| [(k, 1), (k, -1)]);
             let worth = |step: Step| {
-                let (_, weight) = self.after(&[step], |constraint| weights[constraint]);
+                let weight: f64 =
+                    self.rises(&[step]).map(|(i, more)| more as f64 * weights[i]).sum();
                 (weight + ENERGY_WEIGHT * self.cost(step), step)
             };
             match steps.map(worth).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
@@ -335,6 +348,31 @@ impl<'a> LocalSearch<'a> {
     }
 }
 
+/// What two steps add to constraints, ascending.
+struct Merged<'a> {
+    /// What the vector of each step moves, and how often it is added.
+    lists: [(&'a [(usize, [i64; 2])], i64); 2],
+}
+
+impl Iterator for Merged<'_> {
+    type Item = (usize, [i64; 2]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let heads = self.lists.map(|(list, _)| list.first());
+        let next = heads.iter().flatten().map(|head| head.0).min()?;
+        let mut sum = [0; 2];
+        for (list, step) in &mut self.lists {
+            if let [(i, [a, b]), rest @ ..] = *list
+                && *i == next
+            {
+                sum = [sum[0] + *step * a, sum[1] + *step * b];
+                *list = rest;
+            }
+        }
+        Some((next, sum))
+    }
+}
+
 /// For each vector of the basis the constraints it moves, and how.
 fn displacements(problem: &RoundingProblem<'_>) -> Vec<Displacements> {
     // For each coordinate the constraints it occurs in.
@@ -348,17 +386,16 @@ fn displacements(problem: &RoundingProblem<'_>) -> Vec<Displacements> {
             }
         }
     }
+    let mut sums = vec![[0; 2]; problem.constraints.len()];
     let along = |vector: &Row| {
-        let mut steps: Displacements = vector
-            .iter()
-            .flat_map(|&(k, c)| occurs[k].iter().map(move |&(i, [u, v])| (i, [c * u, c * v])))
-            .collect();
-        steps.sort_unstable();
-        let sum = |group: &[(usize, [i64; 2])]| {
-            group.iter().fold((group[0].0, [0; 2]), |(i, [u, v]), (_, [a, b])| (i, [u + a, v + b]))
-        };
-        let sums = steps.chunk_by(|a, b| a.0 == b.0).map(sum);
-        sums.filter(|(_, step)| *step != [0; 2]).collect()
+        for &(k, c) in vector {
+            for &(i, [u, v]) in &occurs[k] {
+                let [a, b] = sums[i];
+                sums[i] = [a + c * u, b + c * v];
+            }
+        }
+        let all = sums.iter_mut().map(std::mem::take).enumerate();
+        all.filter(|(_, step)| *step != [0; 2]).collect()
     };
     problem.energy.basis.vectors.iter().map(along).collect()
 }

@@ -27,6 +27,8 @@ pub struct Rounding {
     pub is_second: bool,
     /// Whether constraints were violated before a repair.
     pub is_repaired: bool,
+    /// Passes made.
+    pub passes: usize,
 }
 
 /// Connections shorter than this are rounded first, grid units.
@@ -50,18 +52,19 @@ pub fn round_greedily(problem: &RoundingProblem<'_>) -> Vec<i64> {
 
 /// Rounds the shortest connections first, then the rest, then improves the result by local search; if some connections
 /// were hard to keep, once more with these before all others, and again while constraints are violated. Returns what
-/// violates least, or has the least energy.
+/// violates least, or has the least energy, after so many passes at most.
 ///
 /// # Errors
 /// [`Cancelled`] when the observer breaks.
 pub fn round(
     problem: &RoundingProblem<'_>,
+    passes: usize,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, Cancelled> {
     let mut times_hard = vec![0; problem.constraints.len()];
     let mut best = round_once(problem, &times_hard, watch)?;
     let mut hard = best.hard.clone();
-    for pass in 1..MOST_PASSES {
+    for pass in 1..MOST_PASSES.min(passes) {
         let is_enough = pass > 1 && best.violated.count == 0;
         if hard.is_empty() || is_enough || best.violated.count > HOPELESS {
             break;
@@ -71,8 +74,9 @@ pub fn round(
         hard = next.hard.clone();
         let key = |rounding: &Rounding| (rounding.violated.count, rounding.energy);
         if key(&next) < key(&best) {
-            best = Rounding { is_second: true, ..next };
+            best = Rounding { is_second: true, passes: best.passes, ..next };
         }
+        best.passes += 1;
     }
     Ok(best)
 }
@@ -103,7 +107,7 @@ pub fn improve(
     let (x, is_repaired) = local::improve(problem, x, watch)?;
     let (violated, energy) = (problem.violations(&x), problem.energy_at(&x));
     let hard = violated.involved.clone();
-    Ok(Rounding { x, violated, energy, hard, is_second: false, is_repaired })
+    Ok(Rounding { x, violated, energy, hard, is_second: false, is_repaired, passes: 1 })
 }
 
 /// Fixes connections, the shortest as they are now first, at the cheapest value that lets no determined one vanish;
@@ -177,7 +181,7 @@ mod tests {
 
     fn rounded(problem: &RoundingProblem<'_>) -> Vec<i64> {
         let mut go_on = |_| ControlFlow::Continue(());
-        let rounding = round(problem, &mut Watch::new(&mut go_on, 0, 1)).unwrap();
+        let rounding = round(problem, MOST_PASSES, &mut Watch::new(&mut go_on, 0, 1)).unwrap();
         assert_eq!(rounding.violated, Violations::default());
         assert_eq!(problem.violations(&rounding.x), Violations::default());
         rounding.x

@@ -1,0 +1,99 @@
+//! A seamless map rounded to a grid, with the features that the grid has room for.
+
+use crate::context::Watcher;
+use crate::error::Error;
+use crate::features::{FeatureCurves, ordered};
+use crate::integer::SeamlessStart;
+use crate::options::IntegerMapOptions;
+use crate::surface::Surface;
+use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph};
+use seamstress_parametrize::{ReleaseReason, ReleasedFeature};
+use seamstress_quads::ManifoldError;
+use seamstress_quantize::{QuantizationFailure, QuantizeError, QuantizeOptions};
+use std::collections::BTreeSet;
+
+/// Maps made at most, each with fewer features.
+const MOST_MAPS: usize = 8;
+/// How much finer the grid may get before features are given up, by the number of cells.
+const FINEST: f64 = 1.25;
+/// Passes of roundings that a component is worth before that.
+const EFFORT: usize = 20;
+/// Curves shorter than so many cells are given up before others.
+const SHORT: f64 = 1.0;
+
+impl Surface {
+    /// Makes a seamless map and rounds it. Where features are too close together for the grid asked for, the shortest curves
+    /// there are given up, and the map is made again; where there are none to give up, the grid gets finer.
+    ///
+    /// # Errors
+    /// Those of [`Surface::make_seamless`], and of the rounding with the fewest features.
+    pub(crate) fn make_gridded<T>(
+        &self,
+        asked: &FeatureCurves,
+        options: &IntegerMapOptions,
+        watcher: &mut Watcher,
+        round: impl Fn(&SeamlessStart, &QuantizeOptions, &mut Watcher) -> Result<T, ManifoldError>,
+    ) -> Result<(SeamlessStart, T), Error> {
+        let (mesh, settings) = (self.mesh(), options.to_quantize());
+        let brief = QuantizeOptions { finest: FINEST, effort: EFFORT, ..settings };
+        let cell = settings.size.cell(self.metric().side());
+        let mut curves = asked.clone();
+        let mut given_up = Vec::new();
+        let mut n_maps = 1;
+        let (start, made) = loop {
+            let start = self.make_seamless(curves.clone(), options, watcher)?;
+            let kept = start.kept(mesh);
+            let may_give_up = n_maps < MOST_MAPS && !options.map.features_strict;
+            let mut crowded = EdgeSet::new(mesh, []);
+            if may_give_up && !kept.is_empty() {
+                match round(&start, &brief, watcher) {
+                    Ok(made) => break (start, made),
+                    Err(cause) => crowded = self.crowded(&cause, &kept, cell),
+                }
+            }
+            if crowded.is_empty() {
+                let made = round(&start, &settings, watcher);
+                break (start, made.map_err(|cause| self.no_manifold(cause, options))?);
+            }
+            let pairs = crowded.vertex_pairs(mesh).into_iter().map(ordered);
+            given_up.extend(pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded)));
+            curves = curves.without(self, &crowded);
+            n_maps += 1;
+        };
+        let features = start.features.map(|features| features.among(asked, given_up));
+        Ok((SeamlessStart { features, ..start }, made))
+    }
+
+    /// The edges to give up where a rounding has failed: of the curves at lines of the grid that would meet, the short ones,
+    /// or else the shortest at each place.
+    fn crowded(&self, cause: &ManifoldError, kept: &EdgeSet, cell: f64) -> EdgeSet {
+        let failed = match cause {
+            ManifoldError::Quantize(QuantizeError::Components(failed)) => &failed[..],
+            _ => &[],
+        };
+        let pairs = failed.iter().flat_map(|part| match &part.cause {
+            QuantizationFailure::TooCoarse { pairs, .. } => &pairs[..],
+            _ => &[],
+        });
+        let graph = FeatureGraph::new(self.mesh(), self.metric(), kept);
+        let inside: Vec<&Curve> =
+            graph.curves.iter().filter(|curve| curve.boundary_edges == 0).collect();
+        let at = |pair: &[u32; 2]| {
+            let touches = |curve: &&&Curve| curve.vertices.iter().any(|v| pair.contains(&v.0));
+            inside.iter().copied().filter(|curve| touches(&curve)).collect::<Vec<_>>()
+        };
+        let ends: BTreeSet<[u32; 2]> = pairs.copied().collect();
+        let crowds: Vec<Vec<&Curve>> = ends.iter().map(at).collect();
+        let short: Vec<&Curve> =
+            crowds.iter().flatten().copied().filter(|curve| curve.length < SHORT * cell).collect();
+        let given_up = match short.is_empty() {
+            true => crowds
+                .iter()
+                .filter_map(|crowd| crowd.iter().min_by(|a, b| a.length.total_cmp(&b.length)))
+                .copied()
+                .collect(),
+            false => short,
+        };
+        EdgeSet::new(self.mesh(), given_up.iter().flat_map(|curve| curve.edges.iter().copied()))
+    }
+}

@@ -1,0 +1,46 @@
+//! Details that are smaller than the quads asked for.
+#![cfg(feature = "parallel")]
+#![allow(clippy::unwrap_used)]
+
+use seamstress::{Features, QuadOptions, Surface};
+use seamstress_testkit::{parts, voxel_surface};
+
+/// A ball of unit cubes.
+fn voxel_ball(radius: i32) -> Surface {
+    let range = -radius..radius;
+    let middle = |x: i32| 2 * x + 1;
+    let is_inside =
+        |cell: &[i32; 3]| cell.iter().map(|&x| middle(x).pow(2)).sum::<i32>() < (2 * radius).pow(2);
+    let all = range.clone().flat_map(|x| {
+        let range = range.clone();
+        range.clone().flat_map(move |y| range.clone().map(move |z| [x, y, z]))
+    });
+    let ball = voxel_surface(&all.filter(is_inside).collect::<Vec<_>>());
+    Surface::from_triangles(&ball.positions, &ball.faces).unwrap()
+}
+
+#[test]
+fn stairs_smaller_than_a_cell_are_no_reason_for_a_finer_grid() {
+    for radius in [4, 6] {
+        let made = voxel_ball(radius).quad_mesh(&QuadOptions::count(200)).unwrap();
+        let count = made.quads().len();
+        assert!((180..=220).contains(&count), "radius {radius}: {count} quads");
+        // Each voxel corner has been a cone.
+        assert!(made.irregular().len() <= 40, "{} irregular", made.irregular().len());
+    }
+}
+
+#[test]
+fn features_that_are_too_close_together_are_given_up_and_named() {
+    let (_, thread) = parts().into_iter().find(|(name, _)| name == "thread_2_16").unwrap();
+    let surface = Surface::from_triangles(&thread.positions, &thread.faces).unwrap();
+    let options = QuadOptions::count(100).features(Features::angle(30.0));
+    let made = surface.quad_mesh(&options).unwrap();
+    let count = made.quads().len();
+    assert!((85..=125).contains(&count), "{count} quads");
+    let report = serde_json::to_value(made.report()).unwrap();
+    let dropped = report["features"]["dropped"].as_array().unwrap();
+    assert!(dropped.iter().any(|edge| edge["reason"] == "crowded"), "{dropped:?}");
+    let kept = report["features"]["kept"].as_u64().unwrap();
+    assert_eq!(kept + dropped.len() as u64, report["features"]["edges"].as_u64().unwrap());
+}
