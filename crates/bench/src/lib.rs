@@ -13,3 +13,4 @@ mod program;
 pub mod results;
 mod statistics;
 mod verify;
+mod yardstick;

@@ -1,37 +1,29 @@
-//! Cholesky factorisation of a sparse Hermitian positive definite matrix.
+//! Cholesky factorisation of a sparse Hermitian positive definite matrix: multifrontal, by supernodes (Duff and Reid
+//! 1983; Liu 1992).
 //!
-//! The symbolic analysis depends on the [`Pattern`] and the order only and is kept; each
-//! [`Cholesky::factorize`] is numeric work alone. Everything runs on the calling thread: two threads
-//! gained nothing on matrices of this kind, and one keeps the bits of the result independent of how
-//! many there are.
+//! The symbolic analysis depends on the [`Pattern`] and the order only and is kept; each [`Cholesky::factorize`] is
+//! numeric work alone, on the threads of the caller's pool. Results do not depend on how many there are. They may
+//! differ in the last bits between processors that round a multiplication and an addition together (x86-64 with
+//! AVX2 and FMA, AArch64) and others.
+
+mod fronts;
+mod kernels;
+mod numeric;
+mod quad;
+mod selected_inverse;
+mod solve;
+mod symbolic;
+mod tree;
 
 use crate::pattern::Pattern;
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use kernels::dispatch;
+use numeric::Factor;
+pub use quad::Scalar;
+use solve::Solve;
+use symbolic::Symbolic;
 
-/// Numbers that matrices may hold: `f64` and [`num_complex::Complex64`].
-pub trait Scalar: faer::traits::ComplexField + Copy + Default + Send + Sync {}
-impl Scalar for f64 {}
-impl Scalar for num_complex::Complex64 {}
-
-/// How the numeric work is organised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Kernel {
-    /// By dense blocks of columns with equal structure: for systems with two unknowns per vertex.
-    #[default]
-    Supernodal,
-    /// Column by column: for scalar systems on a surface, whose factors are too sparse for blocks; solves
-    /// were twice as fast on a Laplacian of 43,000 vertices.
-    Simplicial,
-}
+/// No id.
+const NONE: u32 = u32::MAX;
 
 /// The matrix is not positive definite to working precision (or holds a value that is not finite).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -40,133 +32,99 @@ pub struct NotPositiveDefinite;
 
 /// Analysis, factor and workspace for one pattern.
 pub struct Cholesky<T: Scalar> {
-    symbolic: SymbolicCholesky<u32>,
-    factor: Vec<T>,
-    workspace: MemBuffer,
+    symbolic: Symbolic,
+    factor: Factor<T>,
+    /// Of solves with one right-hand side.
+    workspace: Workspace<T, 1>,
+}
+
+/// Memory of a solve with `N` right-hand sides.
+struct Workspace<T: Scalar, const N: usize> {
+    x: Vec<[T; N]>,
+    sums: Vec<[T::Quad; N]>,
+}
+
+impl<T: Scalar, const N: usize> Workspace<T, N> {
+    fn new(symbolic: &Symbolic) -> Self {
+        Self {
+            x: vec![[T::default(); N]; symbolic.order.len()],
+            sums: vec![[T::Quad::default(); N]; symbolic.widest],
+        }
+    }
+
+    /// Solves for `N` columns, one after the other in `rhs`.
+    fn solve<const R: usize>(&mut self, symbolic: &Symbolic, factor: &Factor<T>, rhs: &mut [T]) {
+        let n = symbolic.order.len();
+        for (x, &i) in self.x.iter_mut().zip(&symbolic.order) {
+            *x = std::array::from_fn(|k| rhs[k * n + i as usize]);
+        }
+        let Self { x, sums } = self;
+        dispatch(Solve::<T, R, N> { symbolic, factor, x, sums });
+        for (x, &i) in self.x.iter().zip(&symbolic.order) {
+            (0..N).for_each(|k| rhs[k * n + i as usize] = x[k]);
+        }
+    }
 }
 
 impl<T: Scalar> Cholesky<T> {
-    /// Analyses the pattern for the elimination order given (`order[k]` goes `k`-th), for the supernodal
-    /// kernel.
-    ///
-    /// # Errors
-    /// As [`Cholesky::analyze_for`].
-    pub fn analyze(pattern: &Pattern, order: &[u32]) -> Result<Self, NotPositiveDefinite> {
-        Self::analyze_for(Kernel::Supernodal, pattern, order)
-    }
-
     /// Analyses the pattern for the elimination order given (`order[k]` goes `k`-th).
     ///
     /// # Errors
-    /// When memory runs out, or `order` is no permutation of the unknowns.
-    pub fn analyze_for(
-        kernel: Kernel,
-        pattern: &Pattern,
-        order: &[u32],
-    ) -> Result<Self, NotPositiveDefinite> {
-        let n = pattern.order();
-        let mut position = vec![u32::MAX; n];
-        for (k, &i) in order.iter().enumerate() {
-            *position.get_mut(i as usize).ok_or(NotPositiveDefinite)? = k as u32;
+    /// When `order` is no permutation of the unknowns.
+    pub fn analyze(pattern: &Pattern, order: &[u32]) -> Result<Self, NotPositiveDefinite> {
+        let mut seen = vec![false; pattern.order()];
+        for &i in order {
+            let seen = seen.get_mut(i as usize).ok_or(NotPositiveDefinite)?;
+            if std::mem::replace(seen, true) {
+                return Err(NotPositiveDefinite);
+            }
         }
-        if order.len() != n || position.contains(&u32::MAX) {
+        if order.len() != pattern.order() {
             return Err(NotPositiveDefinite);
         }
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: match kernel {
-                Kernel::Supernodal => SupernodalThreshold::FORCE_SUPERNODAL,
-                Kernel::Simplicial => SupernodalThreshold::FORCE_SIMPLICIAL,
-            },
-            ..Default::default()
-        };
-        let symbolic = factorize_symbolic_cholesky(
-            symbolic_matrix(pattern),
-            Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(order, &position, n)),
-            params,
-        )
-        .map_err(|_| NotPositiveDefinite)?;
-        let request = StackReq::any_of(&[
-            symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, Default::default()),
-            symbolic.solve_in_place_scratch::<T>(1, Par::Seq),
-        ]);
-        Ok(Self {
-            factor: vec![T::default(); symbolic.len_val()],
-            workspace: MemBuffer::try_new(request).map_err(|_| NotPositiveDefinite)?,
-            symbolic,
-        })
+        let symbolic = Symbolic::new(pattern, order, T::REALS);
+        let (factor, workspace) = (Factor::new(&symbolic), Workspace::new(&symbolic));
+        Ok(Self { symbolic, factor, workspace })
     }
 
-    pub(crate) fn symbolic(&self) -> &SymbolicCholesky<u32> {
-        &self.symbolic
-    }
-
-    pub(crate) fn factor(&self) -> &[T] {
-        &self.factor
-    }
-
-    /// Number of entries of the factor.
+    /// Number of entries of the factor, with those that only fill up blocks.
     pub fn factor_len(&self) -> usize {
-        self.factor.len()
+        4 * self.factor.panels.len()
     }
 
-    /// Factors the matrix whose lower triangle has these values.
+    /// Factors the matrix with these values in the slots of the pattern.
     ///
     /// # Errors
     /// [`NotPositiveDefinite`]; the factor is then unusable until the next success.
-    pub fn factorize(
-        &mut self,
-        pattern: &Pattern,
-        values: &[T],
-    ) -> Result<(), NotPositiveDefinite> {
-        let matrix = SparseColMatRef::new(symbolic_matrix(pattern), values);
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut self.factor,
-                matrix,
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut self.workspace),
-                Default::default(),
-            )
-            .map(|_| ())
-            .map_err(|_| NotPositiveDefinite)
+    pub fn factorize(&mut self, values: &[T]) -> Result<(), NotPositiveDefinite> {
+        self.factor.factorize(&self.symbolic, values)
     }
 
     /// Overwrites the right-hand side with the solution.
     pub fn solve(&mut self, rhs: &mut [T]) {
-        let n = rhs.len();
-        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.workspace),
-        );
+        self.workspace.solve::<4>(&self.symbolic, &self.factor, rhs);
     }
 
-    /// Solves for several right-hand sides at once, column after column in `rhs`; one pass over the
-    /// factor serves all. Needs no exclusive access, so threads can share the factor.
-    ///
-    /// # Errors
-    /// When there is no memory for the workspace.
-    pub fn solve_columns(&self, rhs: &mut [T], columns: usize) -> Result<(), NotPositiveDefinite> {
-        let n = self.symbolic.nrows();
-        let request = self.symbolic.solve_in_place_scratch::<T>(columns, Par::Seq);
-        let mut workspace = MemBuffer::try_new(request).map_err(|_| NotPositiveDefinite)?;
-        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut rhs[..n * columns], n, columns),
-            Par::Seq,
-            MemStack::new(&mut workspace),
-        );
-        Ok(())
+    /// Solves for several right-hand sides at once, column after column in `rhs`; one pass over the factor serves up
+    /// to four. Needs no exclusive access, so threads can share the factor. Each solution has the same bits as that
+    /// of [`Cholesky::solve`].
+    pub fn solve_columns(&self, rhs: &mut [T], columns: usize) {
+        let n = self.symbolic.order.len();
+        let (fours, rest) = rhs[..n * columns].split_at_mut(columns / 4 * 4 * n);
+        let (twos, ones) = rest.split_at_mut(columns % 4 / 2 * 2 * n);
+        if !fours.is_empty() {
+            let mut workspace = Workspace::<T, 4>::new(&self.symbolic);
+            fours
+                .chunks_exact_mut(4 * n)
+                .for_each(|rhs| workspace.solve::<2>(&self.symbolic, &self.factor, rhs));
+        }
+        if !twos.is_empty() {
+            Workspace::<T, 2>::new(&self.symbolic).solve::<4>(&self.symbolic, &self.factor, twos);
+        }
+        if !ones.is_empty() {
+            Workspace::<T, 1>::new(&self.symbolic).solve::<4>(&self.symbolic, &self.factor, ones);
+        }
     }
-}
-
-fn symbolic_matrix(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
-    let n = pattern.order();
-    SymbolicSparseColMatRef::new_checked(n, n, &pattern.column_offsets, None, &pattern.rows)
 }
 
 #[cfg(test)]
@@ -185,28 +143,22 @@ mod tests {
 
     #[test]
     fn solves_a_real_system_twice_with_one_analysis() {
-        for kernel in [Kernel::Supernodal, Kernel::Simplicial] {
-            solve_twice(kernel);
-        }
-    }
-
-    fn solve_twice(kernel: Kernel) {
         let pattern = path(30);
         let order: Vec<u32> = (0..30).rev().collect();
-        let mut cholesky = Cholesky::analyze_for(kernel, &pattern, &order).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, &order).unwrap();
         for shift in [0.1, 2.0] {
             let diagonal = pattern.diagonal();
             let values: Vec<f64> = (0..pattern.len() as u32)
                 .map(|k| if diagonal.contains(&k) { 2.0 + shift } else { -1.0 })
                 .collect();
-            cholesky.factorize(&pattern, &values).unwrap();
+            cholesky.factorize(&values).unwrap();
             let x: Vec<f64> = (0..30).map(|i| f64::from(i).sin()).collect();
             let mut b = vec![0.0; 30];
             pattern.multiply(&values, &x, &mut b);
             let mut twice = b.repeat(2);
             cholesky.solve(&mut b);
             assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-12));
-            cholesky.solve_columns(&mut twice, 2).unwrap();
+            cholesky.solve_columns(&mut twice, 2);
             assert!(b.repeat(2).iter().zip(&twice).all(|(x, b)| (x - b).abs() < 1e-12));
         }
     }
@@ -218,7 +170,7 @@ mod tests {
         let i = Complex64::i();
         // [[2, -i], [i, 2]] has eigenvalues 1 and 3; the lower entry is i.
         let values = [Complex64::from(2.0), i, Complex64::from(2.0)];
-        cholesky.factorize(&pattern, &values).unwrap();
+        cholesky.factorize(&values).unwrap();
         let x = [Complex64::new(1.0, 2.0), Complex64::new(-3.0, 0.5)];
         let mut b = [2.0 * x[0] - i * x[1], i * x[0] + 2.0 * x[1]];
         cholesky.solve(&mut b);
@@ -226,10 +178,73 @@ mod tests {
     }
 
     #[test]
+    fn a_system_by_hand() {
+        // L = [[2, 0, 0], [1, 3, 0], [-1, 2, 1]], x = (1, 2, 3).
+        let mut builder = PatternBuilder::new(3);
+        builder.add_clique(&[0, 1, 2]);
+        let pattern = builder.build();
+        let values = [4.0, 2.0, -2.0, 10.0, 5.0, 6.0];
+        let rhs = [2.0, 37.0, 26.0];
+        for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0]] {
+            let mut cholesky = Cholesky::analyze(&pattern, &order).unwrap();
+            cholesky.factorize(&values).unwrap();
+            let mut x = rhs;
+            cholesky.solve(&mut x);
+            assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{x:?}");
+        }
+        // The inverse is that of L transposed times that of L.
+        let mut cholesky = Cholesky::analyze(&pattern, &[2, 1, 0]).unwrap();
+        cholesky.factorize(&values).unwrap();
+        let inverse = cholesky.selected_inverse(&pattern);
+        let expected = [35.0 / 36.0, -22.0 / 36.0, 30.0 / 36.0, 20.0 / 36.0, -24.0 / 36.0, 1.0];
+        assert!(inverse.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-14), "{inverse:?}");
+    }
+
+    #[test]
+    fn systems_without_and_with_one_unknown() {
+        let mut none = Cholesky::<f64>::analyze(&path(0), &[]).unwrap();
+        none.factorize(&[]).unwrap();
+        none.solve(&mut []);
+        none.solve_columns(&mut [], 5);
+        assert_eq!(none.factor_len(), 0);
+        assert!(none.selected_inverse(&path(0)).is_empty());
+        let mut one = Cholesky::analyze(&path(1), &[0]).unwrap();
+        one.factorize(&[4.0]).unwrap();
+        let mut x = [8.0, 2.0];
+        one.solve_columns(&mut x, 2);
+        assert_eq!(x, [2.0, 0.5]);
+        assert_eq!(one.selected_inverse(&path(1)), [0.25]);
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(one.factorize(&[bad]), Err(NotPositiveDefinite));
+        }
+        one.factorize(&[16.0]).unwrap();
+        one.solve(&mut x[..1]);
+        assert_eq!(x[0], 0.125);
+    }
+
+    #[test]
+    fn singular_matrices_are_refused() {
+        // The Laplacian of a path, exactly.
+        let pattern = path(8);
+        let mut cholesky = Cholesky::analyze(&pattern, &[0, 1, 2, 3, 4, 5, 6, 7]).unwrap();
+        let mut values = vec![-1.0; pattern.len()];
+        for (k, &slot) in pattern.diagonal().iter().enumerate() {
+            values[slot as usize] = if k == 0 || k == 7 { 1.0 } else { 2.0 };
+        }
+        assert_eq!(cholesky.factorize(&values), Err(NotPositiveDefinite));
+        // A part of the system that is singular.
+        let loose = PatternBuilder::new(3).build();
+        let mut loose = Cholesky::analyze(&loose, &[2, 0, 1]).unwrap();
+        assert_eq!(loose.factorize(&[1.0, 0.0, 1.0]), Err(NotPositiveDefinite));
+    }
+
+    #[test]
     fn refuses_an_indefinite_matrix_and_a_bad_order() {
         let pattern = path(2);
         let mut cholesky = Cholesky::analyze(&pattern, &[0, 1]).unwrap();
-        assert_eq!(cholesky.factorize(&pattern, &[1.0, 2.0, 1.0]), Err(NotPositiveDefinite));
-        assert!(Cholesky::<f64>::analyze(&pattern, &[0, 0]).is_err());
+        assert_eq!(cholesky.factorize(&[1.0, 2.0, 1.0]), Err(NotPositiveDefinite));
+        for order in [&[0, 0][..], &[0], &[0, 2], &[0, 1, 1]] {
+            assert!(Cholesky::<f64>::analyze(&pattern, order).is_err());
+        }
     }
 }

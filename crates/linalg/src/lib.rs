@@ -7,8 +7,8 @@
 //! * [`buckets`]: ids grouped by a key;
 //! * [`assembly`]: sums of small dense blocks into such a pattern;
 //! * [`dense`]: small dense systems;
-//! * [`cholesky`]: a supernodal factorisation (faer) whose symbolic analysis is done once;
-//! * [`selected_inverse`]: entries of the inverse at the places of the pattern.
+//! * [`cholesky`]: a multifrontal factorisation whose symbolic analysis is done once, and entries of
+//!   the inverse at the places of the pattern.
 
 pub mod assembly;
 pub mod buckets;
@@ -16,10 +16,9 @@ pub mod cholesky;
 pub mod dense;
 pub mod ordering;
 pub mod pattern;
-pub mod selected_inverse;
 
 pub use assembly::Assembly;
 pub use buckets::Buckets;
-pub use cholesky::{Cholesky, Kernel, NotPositiveDefinite, Scalar};
+pub use cholesky::{Cholesky, NotPositiveDefinite, Scalar};
 pub use num_complex::Complex64;
 pub use pattern::{Pattern, PatternBuilder};

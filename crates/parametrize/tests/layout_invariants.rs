@@ -260,6 +260,38 @@ fn newton_neither_raises_the_energy_nor_flips() {
     }
 }
 
+/// Where the energy is convex, in a layout that is a little too large, its Hessian is assembled as it is.
+#[test]
+fn the_assembled_hessian_is_the_derivative_of_the_gradient() {
+    for (seed, soup) in shapes().iter().enumerate() {
+        let (mesh, metric) = surface(soup);
+        let (cut, triangles, z) = isometric(&mesh, &metric);
+        let space = LinearSpace::free(cut.n_wedges);
+        let mut problem = LayoutProblem::new(space, triangles, None).unwrap();
+        let size = z.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let direction: Vec<Complex64> = noise(2 * z.len(), 31 + seed as u64)
+            .chunks(2)
+            .map(|c| Complex64::new(c[0], c[1]))
+            .collect();
+        let step = 1e-7 * size;
+        let mut gradient = |t: f64| {
+            let moved: Vec<_> = z.iter().zip(&direction).map(|(z, d)| 1.1 * z + d * t).collect();
+            problem.linearize(&SymmetricDirichlet, &moved)
+        };
+        let (up, down) = (gradient(step), gradient(-step));
+        gradient(0.0);
+        let (pattern, values) = problem.matrix();
+        let d: Vec<f64> = direction.iter().flat_map(|d| [d.re, d.im]).collect();
+        let mut product = vec![0.0; d.len()];
+        pattern.multiply(values, &d, &mut product);
+        let largest = product.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        for ((up, down), product) in up.iter().zip(&down).zip(&product) {
+            let slope = (up - down) / (2.0 * step);
+            assert!((slope - product).abs() < 1e-4 * largest, "shape {seed}: {slope}, {product}");
+        }
+    }
+}
+
 #[test]
 fn the_largest_step_collapses_a_triangle_and_flips_none() {
     for (seed, soup) in shapes().iter().enumerate() {

@@ -12,7 +12,7 @@ use crate::stretch::Stretch;
 use crate::vector::{Point, add, norm, sub};
 use crate::{QuadConnectivity, QuadMesh};
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::progress::Watch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,7 +67,7 @@ pub(crate) fn evenly_spaced(
             .zip(&on_curves)
             .map(|(slider, &to)| sub(to, moves.positions[slider.vertex as usize]))
             .collect();
-        let followers = surroundings.steps(&steps)?;
+        let followers = surroundings.steps(&steps);
         let on_surface = |(&v, step): (&u32, Point)| {
             (v, domain.place(v, add(moves.positions[v as usize], step)))
         };
@@ -221,13 +221,13 @@ impl Surroundings {
         }
         let graph = Graph::from_edges(followers.len(), edges.iter().map(|&[i, j]| (i, j)));
         let order = fill_reducing_order(&graph);
-        let mut laplacian = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
-        laplacian.factorize(&pattern, &matrix)?;
+        let mut laplacian = Cholesky::analyze(&pattern, &order)?;
+        laplacian.factorize(&matrix)?;
         Ok(Self { sliders, followers, beside, laplacian })
     }
 
     /// The steps of the followers when the sliders make these.
-    fn steps(&self, sliders: &[Point]) -> Result<Vec<Point>, NotPositiveDefinite> {
+    fn steps(&self, sliders: &[Point]) -> Vec<Point> {
         let n = self.followers.len();
         let mut columns = vec![0.0; 3 * n];
         for &(follower, slider) in &self.beside {
@@ -235,8 +235,8 @@ impl Surroundings {
                 columns[axis * n + follower] += sliders[slider][axis];
             }
         }
-        self.laplacian.solve_columns(&mut columns, 3)?;
-        Ok((0..n).map(|k| [0, 1, 2].map(|axis| columns[axis * n + k])).collect())
+        self.laplacian.solve_columns(&mut columns, 3);
+        (0..n).map(|k| [0, 1, 2].map(|axis| columns[axis * n + k])).collect()
     }
 }
 

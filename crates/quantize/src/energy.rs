@@ -2,7 +2,6 @@
 
 use crate::linear::Dense;
 use crate::space::IntegerSpace;
-use seamstress_linalg::NotPositiveDefinite;
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 
@@ -36,20 +35,14 @@ pub fn couple(problem: &LayoutProblem, d: &[f64]) -> Vec<f64> {
 /// The Schur complement `P = B' (H_XX - H_Xx H_xx^-1 H_xX) B` of the last assembled and factored matrix,
 /// with the held unknowns `X = B xi`: to second order, half of `d' P d` is what moving the coordinates xi by
 /// `d` costs when everything else follows.
-///
-/// # Errors
-/// When there is no memory for the solves.
-pub fn schur_complement(
-    problem: &LayoutProblem,
-    space: &IntegerSpace,
-) -> Result<Dense, NotPositiveDefinite> {
+pub fn schur_complement(problem: &LayoutProblem, space: &IntegerSpace) -> Dense {
     let n_free = problem.n_free();
     let (order, n_held) = (space.n_coordinates(), space.n_held());
     let columns = columns(space);
     let (cross, held): (Vec<_>, Vec<_>) =
         couplings(problem).partition(|(_, column, _)| *column < n_free);
     let chunks: Vec<&[SparseColumn]> = columns.chunks(COLUMNS).collect();
-    let blocks: Result<Vec<Vec<f64>>, NotPositiveDefinite> = chunks
+    let blocks: Vec<Vec<f64>> = chunks
         .into_par_iter()
         .map(|chunk| {
             let mut held_part = vec![0.0; n_held * chunk.len()];
@@ -61,9 +54,7 @@ pub fn schur_complement(
                 let (d, out) = (&held_part[k * n_held..], &mut x[k * n_free..(k + 1) * n_free]);
                 cross.iter().for_each(|&(row, column, v)| out[column] += v * d[row - n_free]);
             }
-            if n_free > 0 {
-                problem.solve_columns(&mut x, chunk.len())?;
-            }
+            problem.solve_columns(&mut x, chunk.len());
             let mut block = Vec::with_capacity(order * chunk.len());
             for k in 0..chunk.len() {
                 let (d, x) = (&held_part[k * n_held..], &x[k * n_free..]);
@@ -80,13 +71,13 @@ pub fn schur_complement(
                     |c: &SparseColumn| c.iter().map(|&(k, b)| b * response[k]).sum::<f64>();
                 block.extend(columns.iter().map(project));
             }
-            Ok(block)
+            block
         })
         .collect();
-    let raw: Vec<f64> = blocks?.concat();
+    let raw: Vec<f64> = blocks.concat();
     let at = |i: usize, j: usize| 0.5 * (raw[i * order + j] + raw[j * order + i]);
     let values = (0..order * order).map(|k| at(k / order, k % order)).collect();
-    Ok(Dense { order, values })
+    Dense { order, values }
 }
 
 /// Entries of a column of B: held unknown and coefficient.

@@ -126,7 +126,7 @@ impl<'a> SeamlessLayout<'a> {
 
     fn reduce(&mut self, keeps_area: bool) -> Result<ReducedEnergy, QuantizationFailure> {
         self.problem.factorize(SHIFT)?;
-        let matrix = schur_complement(&self.problem, &self.space)?;
+        let matrix = schur_complement(&self.problem, &self.space);
         let turnable = self.aligned.is_empty().then_some(self.coordinates.as_slice());
         let area = if keeps_area { self.area_form() } else { None };
         Ok(ReducedEnergy::new(&matrix, turnable, area)?)

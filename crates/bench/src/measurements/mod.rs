@@ -2,6 +2,7 @@
 
 mod conic;
 mod consistency;
+mod factorisations;
 mod features;
 mod fields;
 mod integer;
@@ -24,6 +25,7 @@ pub enum Measurement {
     Compare(compare::Args),
     Maps(maps::Args),
     Speed(speed::Args),
+    Factorisations(factorisations::Args),
     Rounding(rounding::Args),
     Objectives(objectives::Args),
     Conic(conic::Args),
@@ -46,6 +48,7 @@ impl Measurement {
             Self::Compare(args) => compare::measure(args),
             Self::Maps(args) => maps::measure(args),
             Self::Speed(args) => speed::measure(args),
+            Self::Factorisations(args) => factorisations::measure(args),
             Self::Rounding(args) => rounding::measure(args),
             Self::Objectives(args) => objectives::measure(args),
             Self::Conic(args) => conic::measure(args),

@@ -67,7 +67,7 @@ impl Descent<'_> {
                 let potential = &valley.potential;
                 let least = f64::NEG_INFINITY;
                 let here = Here { groups, system, change: &self.change, potential, least };
-                let partner = here.best_partner(&mut self.resistances, g as u32, sign)?;
+                let partner = here.best_partner(&mut self.resistances, g as u32, sign);
                 let open = self.groups.basins[self.groups.list[g].basin as usize].open;
                 match partner {
                     Some(dipole) => self.apply(&dipole, 1),
@@ -151,7 +151,7 @@ impl Descent<'_> {
             sources.extend(up.iter().take(PEAKS).map(|&(_, g)| (g, 1)));
             sources.extend(down.iter().take(PEAKS).map(|&(_, g)| (g, -1)));
             sources.extend(sweep.next_cones(self.groups, &self.change));
-            here.best_partners(&mut self.resistances, &sources, &mut found)?;
+            here.best_partners(&mut self.resistances, &sources, &mut found);
         } else if sweep.thorough {
             sweep.finish();
         }

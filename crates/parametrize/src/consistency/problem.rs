@@ -84,7 +84,7 @@ impl<'a> Problem<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<Found, ConsistencyError> {
         self.system.factorize(&vec![1.0; self.angles.len()], 0.0)?;
-        let resistances = Resistances::new(&self.system, self.groups, options.column_memory)?;
+        let resistances = Resistances::new(&self.system, self.groups, options.column_memory);
         let (groups, system) = (self.groups, &self.system);
         let change = vec![0; groups.len()];
         let mut search =

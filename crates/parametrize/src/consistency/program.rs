@@ -359,7 +359,7 @@ impl<'a> Point<'a> {
         for (i, &g) in system.group.iter().enumerate().filter(|(_, g)| **g != FREE) {
             group[g as usize] -= weights[i] * (push[i] + triangle[i / 3] / sums[i / 3]);
         }
-        system.solve(&mut group)?;
+        system.solve(&mut group);
         let at = |g: u32| if g == FREE { 0.0 } else { group[g as usize] };
         for (i, &g) in system.group.iter().enumerate() {
             triangle[i / 3] -= weights[i] * at(g);

@@ -2,7 +2,6 @@
 
 use super::groups::Groups;
 use super::system::System;
-use seamstress_linalg::NotPositiveDefinite;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Effective resistances of the Laplacian over the groups, from its selected inverse and from columns
@@ -21,18 +20,14 @@ pub(super) struct Resistances {
 }
 
 impl Resistances {
-    pub(super) fn new(
-        system: &System,
-        groups: &Groups,
-        memory: usize,
-    ) -> Result<Self, NotPositiveDefinite> {
+    pub(super) fn new(system: &System, groups: &Groups, memory: usize) -> Self {
         let n = groups.len();
-        let selected = if n == 0 { Vec::new() } else { system.selected_inverse()? };
+        let selected = system.selected_inverse();
         let diagonal: Vec<f64> =
             system.pattern.diagonal().iter().map(|&k| selected[k as usize]).collect();
-        let centred = centre(system, groups, &diagonal)?;
+        let centred = centre(system, groups, &diagonal);
         let capacity = memory / (8 * n.max(1));
-        Ok(Self { selected, diagonal, centred, columns: BTreeMap::new(), capacity, solved: 0 })
+        Self { selected, diagonal, centred, columns: BTreeMap::new(), capacity, solved: 0 }
     }
 
     /// Resistance between two groups that share a triangle, by their place in the pattern.
@@ -51,11 +46,7 @@ impl Resistances {
     }
 
     /// Sees to it that the columns of some groups are there; when memory is short, all others go.
-    pub(super) fn columns(
-        &mut self,
-        system: &System,
-        of: &[u32],
-    ) -> Result<(), NotPositiveDefinite> {
+    pub(super) fn columns(&mut self, system: &System, of: &[u32]) {
         let missing: BTreeSet<u32> =
             of.iter().copied().filter(|g| !self.columns.contains_key(g)).collect();
         let missing: Vec<u32> = missing.into_iter().collect();
@@ -63,19 +54,14 @@ impl Resistances {
             self.columns.retain(|g, _| of.contains(g));
         }
         self.solved += missing.len();
-        self.columns.extend(missing.iter().copied().zip(system.columns(&missing)?));
-        Ok(())
+        self.columns.extend(missing.iter().copied().zip(system.columns(&missing)));
     }
 }
 
 /// Diagonal of the pseudo-inverse, `G_gg - 2 (G 1)_g / n + 1' G 1 / n^2` in a closed component.
-fn centre(
-    system: &System,
-    groups: &Groups,
-    diagonal: &[f64],
-) -> Result<Vec<f64>, NotPositiveDefinite> {
+fn centre(system: &System, groups: &Groups, diagonal: &[f64]) -> Vec<f64> {
     let mut sums = vec![1.0; groups.len()];
-    system.solve(&mut sums)?;
+    system.solve(&mut sums);
     let n_components = groups.component.iter().max().map_or(0, |&c| c as usize + 1);
     let (mut totals, mut sizes) = (vec![0.0; n_components], vec![0.0; n_components]);
     for (&c, sum) in groups.component.iter().zip(&sums) {
@@ -89,5 +75,5 @@ fn centre(
         }
         diagonal[g] - 2.0 * sums[g] / sizes[c] + totals[c] / (sizes[c] * sizes[c])
     };
-    Ok((0..groups.len()).map(value).collect())
+    (0..groups.len()).map(value).collect()
 }

@@ -7,7 +7,7 @@
 use super::groups::FREE;
 use crate::cut::DisjointSets;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 
 /// By what share of itself a pinned group's diagonal grows: where the matrix is singular, and where it may
 /// be nearly so. Steps of the interior point may be a little inexact.
@@ -56,7 +56,7 @@ impl System {
                 pairs.map(|(i, j)| slot(c[i], c[j]))
             })
             .collect();
-        let cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+        let cholesky = Cholesky::analyze(&pattern, &order)?;
         let values = vec![0.0; pattern.len()];
         let pinned = pinned(&group, n);
         Ok(Self { group, pattern, graph, pinned, order, slots, values, cholesky })
@@ -72,7 +72,7 @@ impl System {
             order: self.order.clone(),
             slots: self.slots.clone(),
             values: self.values.clone(),
-            cholesky: Cholesky::analyze_for(Kernel::Simplicial, &self.pattern, &self.order)?,
+            cholesky: Cholesky::analyze(&self.pattern, &self.order)?,
         })
     }
 
@@ -114,16 +114,16 @@ impl System {
             let value = &mut self.values[diagonal[g as usize] as usize];
             *value = if *value > 0.0 { *value * (1.0 + pin) } else { 1.0 };
         }
-        self.cholesky.factorize(&self.pattern, &self.values)
+        self.cholesky.factorize(&self.values)
     }
 
     /// Overwrites a right-hand side with the solution.
-    pub(super) fn solve(&self, rhs: &mut [f64]) -> Result<(), NotPositiveDefinite> {
-        if rhs.is_empty() { Ok(()) } else { self.cholesky.solve_columns(rhs, 1) }
+    pub(super) fn solve(&self, rhs: &mut [f64]) {
+        self.cholesky.solve_columns(rhs, 1);
     }
 
     /// Columns of the inverse.
-    pub(super) fn columns(&self, of: &[u32]) -> Result<Vec<Vec<f64>>, NotPositiveDefinite> {
+    pub(super) fn columns(&self, of: &[u32]) -> Vec<Vec<f64>> {
         let n = self.pattern.order();
         let mut columns = Vec::with_capacity(of.len());
         for chunk in of.chunks(BATCH) {
@@ -131,15 +131,15 @@ impl System {
             for (column, &g) in block.chunks_exact_mut(n).zip(chunk) {
                 column[g as usize] = 1.0;
             }
-            self.cholesky.solve_columns(&mut block, chunk.len())?;
+            self.cholesky.solve_columns(&mut block, chunk.len());
             columns.extend(block.chunks_exact(n).map(<[f64]>::to_vec));
         }
-        Ok(columns)
+        columns
     }
 
     /// The inverse at the entries of the pattern.
-    pub(super) fn selected_inverse(&self) -> Result<Vec<f64>, NotPositiveDefinite> {
-        self.cholesky.selected_inverse(&self.pattern).ok_or(NotPositiveDefinite)
+    pub(super) fn selected_inverse(&self) -> Vec<f64> {
+        self.cholesky.selected_inverse(&self.pattern)
     }
 }
 

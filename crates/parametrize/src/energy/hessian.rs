@@ -57,6 +57,18 @@ impl ProjectedHessian {
             ],
         }
     }
+
+    /// The matrix itself.
+    #[inline]
+    pub fn matrix(&self) -> [[f64; 4]; 4] {
+        let mut matrix = [[0.0; 4]; 4];
+        for (value, vector) in self.eigenvalues.iter().zip(&self.eigenvectors) {
+            for (row, x) in matrix.iter_mut().zip(vector) {
+                row.iter_mut().zip(vector).for_each(|(entry, y)| *entry += value * x * y);
+            }
+        }
+        matrix
+    }
 }
 
 /// A square root of a unit complex number.

@@ -1,7 +1,7 @@
 //! Least squares over the angles of faces, coupled across edges.
 
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
 use seamstress_mesh::{Halfedge, TriMesh};
 
 /// Shift of the diagonal, against the constant that is free on every component.
@@ -26,8 +26,7 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
         faces.iter().for_each(|pair| builder.add_clique(pair));
         let pattern = builder.build();
         let graph = Graph::from_edges(mesh.n_faces(), faces.iter().map(|&[f, g]| (f, g)));
-        let cholesky =
-            Cholesky::analyze_for(Kernel::Simplicial, &pattern, &fill_reducing_order(&graph))?;
+        let cholesky = Cholesky::analyze(&pattern, &fill_reducing_order(&graph))?;
         let values = vec![T::default(); pattern.len()];
         Ok(Self { faces, pattern, values, cholesky })
     }
@@ -62,7 +61,7 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
                 self.values[slot as usize] += if right > left { off } else { conjugate(off) };
             }
         }
-        self.cholesky.factorize(&self.pattern, &self.values)
+        self.cholesky.factorize(&self.values)
     }
 
     /// Overwrites the right-hand side with the solution.

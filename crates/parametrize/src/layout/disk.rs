@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, TriMesh, Vertex};
 use std::f64::consts::TAU;
 
@@ -41,7 +41,7 @@ pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, Disk
     let pattern = builder.build();
     let edges: Vec<_> = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect();
     let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
-    let mut cholesky = Cholesky::<f64>::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+    let mut cholesky = Cholesky::<f64>::analyze(&pattern, &order)?;
     // Boundary vertices keep rows of their own, `z = z`.
     let mut matrix = vec![0.0; pattern.len()];
     let mut rhs = vec![[0.0; 2]; n];
@@ -62,14 +62,12 @@ pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, Disk
             matrix[slot as usize] = -1.0;
         }
     }
-    cholesky.factorize(&pattern, &matrix)?;
-    let [u, v] = [0, 1].map(|k| {
-        let mut column: Vec<f64> = rhs.iter().map(|r| r[k]).collect();
-        cholesky.solve(&mut column);
-        column
-    });
-    for v0 in mesh.vertices().filter(|&v| is_inner(v)) {
-        z[v0.at()] = Complex64::new(u[v0.at()], v[v0.at()]);
+    cholesky.factorize(&matrix)?;
+    let mut columns: Vec<f64> =
+        [0, 1].iter().flat_map(|&k| rhs.iter().map(move |r| r[k])).collect();
+    cholesky.solve_columns(&mut columns, 2);
+    for v in mesh.vertices().filter(|&v| is_inner(v)) {
+        z[v.at()] = Complex64::new(columns[v.at()], columns[n + v.at()]);
     }
     let corner = |h: Halfedge| z[mesh.origin(h).at()] * metric.unit;
     Ok(mesh.halfedges().map(|h| [corner(h).re, corner(h).im]).collect())

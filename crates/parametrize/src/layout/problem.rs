@@ -177,22 +177,18 @@ impl LayoutProblem {
                 let [x, y] = at_corner(hessian.gradient, g);
                 (local[2 * k], local[2 * k + 1]) = (t.weight * x, t.weight * y);
             }
-            block.fill(0.0);
-            for (value, v) in hessian.eigenvalues.iter().zip(hessian.eigenvectors) {
-                let scale = value * t.weight;
-                if scale <= 0.0 {
-                    continue;
-                }
-                let mut q = [0.0; 6];
-                for (k, &g) in t.gradients.iter().enumerate() {
-                    [q[2 * k], q[2 * k + 1]] = at_corner(v, g);
-                }
-                let mut at = 0;
-                for i in 0..6 {
-                    for j in 0..=i {
-                        block[at] += scale * q[i] * q[j];
-                        at += 1;
-                    }
+            // Corner coordinates change a row of the Jacobian by their gradient.
+            let matrix = hessian.matrix();
+            let along = |row: &[f64; 4], i: usize| {
+                let ([x, y], at) = (t.gradients[i / 2], 2 * (i % 2));
+                row[at] * x + row[at + 1] * y
+            };
+            let mut at = 0;
+            for i in 0..6 {
+                let product = matrix.each_ref().map(|row| t.weight * along(row, i));
+                for j in 0..=i {
+                    block[at] = along(&product, j);
+                    at += 1;
                 }
             }
         });
@@ -266,7 +262,7 @@ impl LayoutProblem {
             for &k in diagonal {
                 values[k as usize] += shift;
             }
-            if self.cholesky.factorize(pattern, values).is_ok() {
+            if self.cholesky.factorize(values).is_ok() {
                 return Ok(());
             }
             shift = (shift * 100.0).max(1e-12 * mean);
@@ -283,7 +279,7 @@ impl LayoutProblem {
         for &k in pattern.diagonal() {
             self.matrix[k as usize] *= 1.0 + raise;
         }
-        self.cholesky.factorize(pattern, &self.matrix)
+        self.cholesky.factorize(&self.matrix)
     }
 
     /// Solves with the last factor in place; held unknowns become zero.
@@ -294,15 +290,8 @@ impl LayoutProblem {
     }
 
     /// Solves for several right-hand sides of the free unknowns at once, column after column.
-    ///
-    /// # Errors
-    /// When there is no memory for the workspace.
-    pub fn solve_columns(
-        &self,
-        rhs: &mut [f64],
-        columns: usize,
-    ) -> Result<(), NotPositiveDefinite> {
-        self.cholesky.solve_columns(rhs, columns)
+    pub fn solve_columns(&self, rhs: &mut [f64], columns: usize) {
+        self.cholesky.solve_columns(rhs, columns);
     }
 
     /// Assembles a matrix and a vector from a block and a vector per triangle, both in the six corner

@@ -3,7 +3,7 @@
 use crate::cut::{MatchedCut, Unfolding};
 use crate::features::Sectors;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, Vertex};
 use seamstress_parallel::prelude::*;
 use std::collections::VecDeque;
@@ -168,8 +168,8 @@ impl Projector {
                 matrix[slot as usize] -= weight;
             }
         }
-        let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
-        cholesky.factorize(&pattern, &matrix)?;
+        let mut cholesky = Cholesky::analyze(&pattern, &order)?;
+        cholesky.factorize(&matrix)?;
         let mut number = vec![0u32; slit.n_halfedges()];
         edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
         let of_turning = unfolding.turning.iter().map(|&h| number[h.at()]).collect();
@@ -187,8 +187,7 @@ impl Projector {
             turn[right as usize] += w * x;
             turn[left as usize] -= w * x;
         }
-        // The only failure is memory, which the factor needed far more of.
-        let _ = self.cholesky.solve_columns(&mut turn, 1);
+        self.cholesky.solve_columns(&mut turn, 1);
         for ((&[left, right], x), w) in self.sides.iter().zip(&mut x).zip(&self.weights) {
             *x = (*x - (turn[right as usize] - turn[left as usize])) * w.sqrt();
         }

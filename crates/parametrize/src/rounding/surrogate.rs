@@ -2,7 +2,7 @@
 
 use crate::features::Sectors;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Kernel, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -59,7 +59,7 @@ impl<'a> Surrogate<'a> {
         let pattern = builder.build();
         let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
         let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
-        let mut cholesky = Cholesky::analyze_for(Kernel::Simplicial, &pattern, &order)?;
+        let mut cholesky = Cholesky::analyze(&pattern, &order)?;
         let cotangent = metric.cotangent();
         let area = metric.vertex_area(mesh);
         let pieces = Pieces::new(sectors, &area);
@@ -78,7 +78,7 @@ impl<'a> Surrogate<'a> {
                 matrix[slot as usize] -= weight;
             }
         }
-        cholesky.factorize(&pattern, &matrix)?;
+        cholesky.factorize(&matrix)?;
         let total = area.iter().sum();
         let mut surrogate = Self {
             sectors,
@@ -110,8 +110,7 @@ impl<'a> Surrogate<'a> {
             *b -= self.pieces.mean(&sums, s) * self.area[s];
         }
         self.hold(&mut b);
-        // The only failure is memory, which the factor needed far more of.
-        let _ = self.cholesky.solve_columns(&mut b, 1);
+        self.cholesky.solve_columns(&mut b, 1);
         self.center(&mut b);
         b
     }
@@ -165,7 +164,7 @@ impl<'a> Surrogate<'a> {
                     self.add_dipole(from, to, column);
                     self.hold(column);
                 }
-                let solved = self.cholesky.solve_columns(&mut columns, chunk.len()).is_ok();
+                self.cholesky.solve_columns(&mut columns, chunk.len());
                 let area = &self.area;
                 let values: Vec<Response> = columns
                     .chunks_mut(n)
@@ -173,9 +172,8 @@ impl<'a> Surrogate<'a> {
                     .map(|(column, (from, to))| {
                         self.center(column);
                         let squares = column.iter().zip(area.iter()).map(|(u, m)| m * u * u);
-                        let quadratic = 8.0 / self.total * squares.sum::<f64>();
                         Response {
-                            quadratic: if solved { quadratic } else { f64::INFINITY },
+                            quadratic: 8.0 / self.total * squares.sum::<f64>(),
                             scale: [column[from.at()], column[to.at()]],
                         }
                     })

@@ -145,6 +145,6 @@ impl<T: Scalar + From<f64> + std::ops::AddAssign + std::ops::Mul<Output = T>> Ma
     }
 
     fn factorize(&mut self) -> Result<(), NotPositiveDefinite> {
-        self.cholesky.factorize(&self.pattern, &self.matrix)
+        self.cholesky.factorize(&self.matrix)
     }
 }

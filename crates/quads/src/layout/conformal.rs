@@ -120,7 +120,7 @@ impl System {
         }
         let mut cholesky =
             Cholesky::analyze(&self.pattern, &self.order).map_err(|_| LayoutError::NoFactor)?;
-        cholesky.factorize(&self.pattern, &matrix).map_err(|_| LayoutError::NoFactor)?;
+        cholesky.factorize(&matrix).map_err(|_| LayoutError::NoFactor)?;
         cholesky.solve(&mut rhs);
         Ok(rhs)
     }

@@ -1,0 +1,207 @@
+//! Solves with a factor: forwards through the fronts, and back.
+
+use super::kernels::Kernel;
+use super::numeric::Factor;
+use super::quad::{Quad, Scalar};
+use super::symbolic::{Front, Symbolic};
+
+/// Solves `L L^H x = b` in place for `N` right-hand sides; row `k` of `x` is the unknown eliminated `k`-th. `R` block
+/// rows of a panel are worked on together, which is a matter of speed only.
+pub(super) struct Solve<'a, T: Scalar, const R: usize, const N: usize> {
+    pub(super) symbolic: &'a Symbolic,
+    pub(super) factor: &'a Factor<T>,
+    pub(super) x: &'a mut [[T; N]],
+    /// As many as any front has columns.
+    pub(super) sums: &'a mut [[T::Quad; N]],
+}
+
+impl<T: Scalar, const R: usize, const N: usize> Kernel for Solve<'_, T, R, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { symbolic, factor, x, sums } = self;
+        for s in 0..symbolic.len() {
+            Panel::<T::Quad>::new(symbolic, factor, s).solve_forwards::<FMA, R, N>(x);
+        }
+        for s in (0..symbolic.len()).rev() {
+            Panel::<T::Quad>::new(symbolic, factor, s).solve_backwards::<FMA, R, N>(x, sums);
+        }
+    }
+}
+
+/// The panel of a front.
+struct Panel<'a, Q> {
+    front: Front<'a>,
+    rows: &'a [Q],
+    /// Reciprocals of the diagonal.
+    inverse: &'a [f64],
+}
+
+impl<'a, Q: Quad> Panel<'a, Q> {
+    #[inline(always)]
+    fn new(symbolic: &'a Symbolic, factor: &'a Factor<Q::Scalar>, s: usize) -> Self {
+        let front = symbolic.front(s);
+        let inverse = &factor.inverse[front.first..][..front.columns];
+        Self { front, rows: &factor.panels[symbolic.panels(s..s + 1)], inverse }
+    }
+
+    /// Block rows of the pivots.
+    #[inline(always)]
+    fn pivots(&self) -> std::slice::ChunksExact<'a, Q> {
+        self.rows[..self.front.pivot_blocks().end * self.front.columns]
+            .chunks_exact(self.front.columns)
+    }
+
+    /// Block rows that have other rows, with these, as strips of `R`. In the first one pivots may come first.
+    #[inline(always)]
+    fn others<const R: usize>(&self) -> impl Iterator<Item = (&'a [Q], usize, &'a [u32])> {
+        let columns = self.front.columns;
+        let blocks = self.front.update_blocks();
+        let mut skip = self.front.update_skip();
+        let mut rows = self.front.rows;
+        self.rows[blocks.start * columns..blocks.end * columns].chunks(R * columns).map(
+            move |strip| {
+                let count = (4 * R - skip).min(rows.len());
+                let (these, rest) = rows.split_at(count);
+                rows = rest;
+                (strip, std::mem::take(&mut skip), these)
+            },
+        )
+    }
+
+    /// Solves for the unknowns of the pivots and subtracts what they contribute to the rows below.
+    #[inline(always)]
+    fn solve_forwards<const FMA: bool, const R: usize, const N: usize>(
+        &self,
+        x: &mut [[Q::Scalar; N]],
+    ) {
+        let columns = self.front.columns;
+        let start = self.front.first + columns;
+        let (done, later) = x.split_at_mut(start);
+        let y = &mut done[self.front.first..];
+        // Right-hand sides are often zero but for a few rows.
+        if y.iter().flatten().all(|&y| y == Q::Scalar::default()) {
+            return;
+        }
+        for (j, row) in self.pivots().enumerate() {
+            let first = 4 * j;
+            let [acc] = times::<Q, FMA, 1, N>(row, columns, &y[..first]);
+            for l in 0..(columns - first).min(4) {
+                for n in 0..N {
+                    let mut value = y[first + l][n] - acc[n].get(l);
+                    for k in first..first + l {
+                        value = value - row[k].get(l) * y[k][n];
+                    }
+                    y[first + l][n] = value.scale(self.inverse[first + l]);
+                }
+            }
+        }
+        let y = &*y;
+        let mut subtract = |blocks: &[[Q; N]], skip: usize, rows: &[u32]| {
+            for (l, &row) in (skip..).zip(rows) {
+                let target = &mut later[row as usize - start];
+                for n in 0..N {
+                    target[n] = target[n] - blocks[l / 4][n].get(l);
+                }
+            }
+        };
+        for (strip, skip, rows) in self.others::<R>() {
+            if strip.len() == R * columns {
+                subtract(&times::<Q, FMA, R, N>(strip, columns, y), skip, rows);
+            } else {
+                let mut blocks = [[Q::default(); N]; R];
+                for (block, strip) in blocks.iter_mut().zip(strip.chunks_exact(columns)) {
+                    [*block] = times::<Q, FMA, 1, N>(strip, columns, y);
+                }
+                subtract(&blocks, skip, rows);
+            }
+        }
+    }
+
+    /// Solves for the unknowns of the pivots, those of the rows below being known.
+    #[inline(always)]
+    fn solve_backwards<const FMA: bool, const R: usize, const N: usize>(
+        &self,
+        x: &mut [[Q::Scalar; N]],
+        sums: &mut [[Q; N]],
+    ) {
+        let columns = self.front.columns;
+        let start = self.front.first + columns;
+        let (done, later) = x.split_at_mut(start);
+        let y = &mut done[self.front.first..];
+        let sums = &mut sums[..columns];
+        sums.fill([Q::default(); N]);
+        for (strip, skip, rows) in self.others::<R>() {
+            let mut blocks = [[Q::default(); N]; R];
+            for (l, &row) in (skip..).zip(rows) {
+                for n in 0..N {
+                    blocks[l / 4][n].set(l, later[row as usize - start][n]);
+                }
+            }
+            if strip.len() == R * columns {
+                add_transposed::<Q, FMA, R, N>(strip, columns, &blocks, sums);
+            } else {
+                for (block, strip) in blocks.into_iter().zip(strip.chunks_exact(columns)) {
+                    add_transposed::<Q, FMA, 1, N>(strip, columns, &[block], sums);
+                }
+            }
+        }
+        for (j, row) in self.pivots().enumerate().rev() {
+            let first = 4 * j;
+            let width = (columns - first).min(4);
+            let mut solved = [[Q::default(); N]];
+            for l in (0..width).rev() {
+                for n in 0..N {
+                    let mut value = y[first + l][n] - sums[first + l][n].sum();
+                    for k in l + 1..width {
+                        value = value - row[first + l].get(k).conjugate() * y[first + k][n];
+                    }
+                    value = value.scale(self.inverse[first + l]);
+                    y[first + l][n] = value;
+                    solved[0][n].set(l, value);
+                }
+            }
+            add_transposed::<Q, FMA, 1, N>(row, columns, &solved, &mut sums[..first]);
+        }
+    }
+}
+
+/// Block rows times `y`: `R` block rows.
+#[inline(always)]
+fn times<Q: Quad, const FMA: bool, const R: usize, const N: usize>(
+    rows: &[Q],
+    columns: usize,
+    y: &[[Q::Scalar; N]],
+) -> [[Q; N]; R] {
+    let a: [&[Q]; R] = std::array::from_fn(|r| &rows[r * columns..][..y.len()]);
+    let mut acc = [[Q::default(); N]; R];
+    for k in 0..y.len() {
+        for r in 0..R {
+            for n in 0..N {
+                acc[r][n].add_product::<FMA>(&a[r][k], y[k][n]);
+            }
+        }
+    }
+    acc
+}
+
+/// `sums[k] += conj(column k) x`, lane by lane, for `R` block rows.
+#[inline(always)]
+fn add_transposed<Q: Quad, const FMA: bool, const R: usize, const N: usize>(
+    rows: &[Q],
+    columns: usize,
+    x: &[[Q; N]; R],
+    sums: &mut [[Q; N]],
+) {
+    let a: [&[Q]; R] = std::array::from_fn(|r| &rows[r * columns..][..sums.len()]);
+    for k in 0..sums.len() {
+        let mut acc = sums[k];
+        for r in 0..R {
+            for n in 0..N {
+                acc[n].add_inner::<FMA>(&a[r][k], &x[r][n]);
+            }
+        }
+        sums[k] = acc;
+    }
+}
