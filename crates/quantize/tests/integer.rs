@@ -1,12 +1,13 @@
 //! Integer-grid maps of small shapes, judged by their certificate and by a check of their own.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
+use seamstress_mesh::components::FailedComponent;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, TriMesh};
 use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, Violation, make_map};
 use seamstress_quantize::{
-    GridSize, IntegerCertificate, IntegerGridMap, IntegralTolerance, Quantization, QuantizeError,
-    QuantizeOptions, RoundingMethod, quantize,
+    GridSize, IntegerCertificate, IntegerGridMap, IntegralTolerance, Quantization,
+    QuantizationFailure, QuantizeError, QuantizeOptions, RoundingMethod, quantize,
 };
 use seamstress_testkit as testkit;
 use std::collections::HashMap;
@@ -167,7 +168,12 @@ fn greedy_rounding_is_refused_where_it_flips() {
     let rounding = RoundingMethod::Greedy;
     let options = QuantizeOptions { size: GridSize::Quads(2.0), rounding, ..Default::default() };
     match run(&mesh, &soup, &options) {
-        Err(QuantizeError::Uncertified(violations)) => {
+        Err(QuantizeError::Components(failed)) => {
+            let [FailedComponent { cause: QuantizationFailure::Uncertified(violations), .. }] =
+                &failed[..]
+            else {
+                panic!("{failed:?}")
+            };
             let is_flip = |v: &Violation| {
                 matches!(v, Violation::FlippedTriangle { .. } | Violation::CollapsedTriangle { .. })
             };

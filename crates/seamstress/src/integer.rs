@@ -10,7 +10,6 @@ use crate::grid_size::GridSize;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
 use crate::parts::{PartReport, Selection};
-use crate::quads::FEWER_CONES;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
@@ -23,6 +22,9 @@ use seamstress_quantize::{
     QuantizeOptions, quantize,
 };
 use serde::Serialize;
+
+/// What may help where quads are no manifold.
+pub(crate) const FEWER_CONES: &str = "try more quads, or fewer cones with a larger `cone_bias`";
 
 /// A certified seamless map whose unit grid closes up over the surface: translations and cones are whole numbers, and
 /// UVs are in grid units.

@@ -6,7 +6,7 @@ use crate::feature_sources::Features;
 use crate::features::FeatureReport;
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
-use crate::integer::{GridReport, SeamlessStart};
+use crate::integer::{FEWER_CONES, GridReport, SeamlessStart};
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::{PartReport, Selection};
 use crate::refined::Workpiece;
@@ -584,9 +584,6 @@ fn folded(what: &str, faces: &[u32]) -> String {
         n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
     }
 }
-
-/// What may help where quads are no manifold.
-pub(crate) const FEWER_CONES: &str = "try more quads, or fewer cones with a larger `cone_bias`";
 
 fn no_manifold_of(faults: &QuadFaults) -> Error {
     Error::new(ErrorKind::NotAManifold, format!("the quads are no manifold: {faults}"))

@@ -25,8 +25,8 @@ fn stairs_smaller_than_a_cell_are_no_reason_for_a_finer_grid() {
         let made = voxel_ball(radius).quad_mesh(&QuadOptions::count(200)).unwrap();
         let count = made.quads().len();
         assert!((180..=220).contains(&count), "radius {radius}: {count} quads");
-        // Each voxel corner has been a cone.
-        assert!(made.irregular().len() <= 40, "{} irregular", made.irregular().len());
+        // Each of several hundred voxel corners has been a cone.
+        assert!(made.irregular().len() <= 60, "{} irregular", made.irregular().len());
     }
 }
 

@@ -96,9 +96,10 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let shape = Shape::new(mesh, positions, metric);
     let found = shape.clear_chains();
     let found = shape.through_gaps(&found);
-    let found = shape.without_details(found, cell);
     let found = shape.without_short_ends(found, cell);
     let found = shape.without_specks(&found, cell);
+    let found = shape.without_details(found, cell);
+    let found = shape.without_short_ends(found, cell);
     shape.of_polyhedra(&found)
 }
 
