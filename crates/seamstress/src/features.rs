@@ -305,7 +305,8 @@ impl Surface {
     /// Finds features and the curves that they form.
     ///
     /// # Errors
-    /// [`ErrorKind::BadFeatures`] where a source names what is not an edge, and [`ErrorKind::Unreadable`].
+    /// [`BadFeatures`](crate::ErrorKind::BadFeatures) where a source names what is not an edge, and
+    /// [`Unreadable`](crate::ErrorKind::Unreadable).
     pub fn features(&self, features: &Features) -> Result<FeatureCurves, Error> {
         self.features_for(features, GridSize::default())
     }

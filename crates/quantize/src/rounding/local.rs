@@ -25,8 +25,11 @@ const WEIGHT_GAIN: f64 = 1e-9;
 /// A vector of the basis and how often it is added, 1 or -1.
 type Step = (usize, i64);
 
-/// Constraints and their displacements, ascending.
-type Displacements = Vec<(usize, [i64; 2])>;
+/// A constraint and its displacement.
+type Displacement = (usize, [i64; 2]);
+
+/// Those of several constraints, ascending.
+type Displacements = Vec<Displacement>;
 
 /// Takes steps along single vectors of the reduced basis and pairs of them while that lowers the number of
 /// violated constraints, or the energy at the same number; where constraints stay violated, repairs them at the cost
@@ -351,13 +354,13 @@ impl<'a> LocalSearch<'a> {
 /// What two steps add to constraints, ascending.
 struct Merged<'a> {
     /// What the vector of each step moves, and how often it is added.
-    lists: [(&'a [(usize, [i64; 2])], i64); 2],
+    lists: [(&'a [Displacement], i64); 2],
 }
 
 impl Iterator for Merged<'_> {
-    type Item = (usize, [i64; 2]);
+    type Item = Displacement;
 
-    fn next(&mut self) -> Option<Self::Item> {
+    fn next(&mut self) -> Option<Displacement> {
         let heads = self.lists.map(|(list, _)| list.first());
         let next = heads.iter().flatten().map(|head| head.0).min()?;
         let mut sum = [0; 2];
