@@ -168,11 +168,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_command_line_is_consistent() {
-        definition().debug_assert();
-    }
-
-    #[test]
     fn options_that_messages_name_are_in_some_help() {
         let command = definition();
         let lab = command.find_subcommand("lab").unwrap();
@@ -185,17 +180,6 @@ mod tests {
             .collect();
         for name in crate::text::OPTIONS {
             assert!(shown.iter().any(|id| id == name), "{name}");
-        }
-    }
-
-    #[test]
-    fn everyday_commands_show_few_options() {
-        let is_shown = |arg: &&clap::Arg| !(arg.is_hide_set() || arg.is_hide_short_help_set());
-        for name in EVERYDAY {
-            let command = definition();
-            let options = command.find_subcommand(name).unwrap().get_opts();
-            let shown = options.filter(is_shown).count();
-            assert!(shown <= 15, "{name} shows {shown} options");
         }
     }
 }

@@ -51,3 +51,19 @@ fn commands_and_flags_stay_known() {
         "the words of the check are out of date: {run:?}"
     );
 }
+
+#[test]
+fn the_command_line_is_consistent() {
+    seamstress_cli::definition().debug_assert();
+}
+
+#[test]
+fn everyday_commands_show_few_options() {
+    let is_shown = |arg: &&clap::Arg| !(arg.is_hide_set() || arg.is_hide_short_help_set());
+    for name in ["map", "quad", "integer", "check", "measure", "features", "extract", "quality"] {
+        let command = seamstress_cli::definition();
+        let options = command.find_subcommand(name).unwrap().get_opts();
+        let shown = options.filter(is_shown).count();
+        assert!(shown <= 15, "{name} shows {shown} options");
+    }
+}
