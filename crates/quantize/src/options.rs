@@ -64,7 +64,7 @@ pub struct QuantizeOptions {
 }
 
 /// Passes of roundings that a component is worth: several times what the hardest meshes measured took.
-const EFFORT: usize = 1000;
+const EFFORT: usize = 500;
 
 impl Default for QuantizeOptions {
     fn default() -> Self {

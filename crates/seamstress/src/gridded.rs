@@ -13,7 +13,7 @@ use seamstress_quantize::{QuantizationFailure, QuantizeError, QuantizeOptions};
 use std::collections::BTreeSet;
 
 /// Maps made at most, each with fewer features.
-const MOST_MAPS: usize = 8;
+const MOST_MAPS: usize = 6;
 /// How much finer the grid may get before features are given up, by the number of cells.
 const FINEST: f64 = 1.25;
 /// Passes of roundings that a component is worth before that.
