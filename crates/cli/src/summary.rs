@@ -27,20 +27,17 @@ pub(crate) fn surface_rows(report: &SurfaceReport) -> Vec<String> {
     let genus = report.genus.map_or("genus undefined".into(), |g| format!("genus {g}"));
     let boundary = boundary_text(report.boundary_loops);
     let components = counted(report.components.len(), "component");
-    let characteristic = report.euler_characteristic;
     let repaired = match report.repairs.len() {
         0 => String::new(),
         n => format!(", after {}", counted(n, "repair")),
     };
     let name = report.file.as_deref().unwrap_or_default();
     let format = report.format.iter().map(|format| format!(" ({format})")).collect::<String>();
+    let euler = format!("Euler characteristic {}", report.euler_characteristic);
     vec![
         row("mesh", &format!("{name}{format}{repaired}")),
         row("size", &counts.join(", ")),
-        row(
-            "topology",
-            &format!("{components}, {genus}, {boundary}, Euler characteristic {characteristic}"),
-        ),
+        row("topology", &[components, genus, boundary, euler].join(", ")),
     ]
 }
 

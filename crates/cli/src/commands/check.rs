@@ -96,6 +96,12 @@ pub(crate) struct Checked {
     map: Option<CheckedMap>,
 }
 
+impl Checked {
+    fn curves(&self) -> Option<&FeatureCurves> {
+        self.surface.as_ref()?.1.as_ref()
+    }
+}
+
 struct CheckedMap {
     differences: Vec<Finding>,
     /// Of maps whose faces are those of the mesh.
@@ -116,10 +122,8 @@ impl CheckArgs {
     fn check_map(&self, surface: &Surface, path: &Path) -> Result<CheckedMap, Failure> {
         let map = MapFile::read(path)?;
         let differences = map.differences(surface);
-        let verdict = match map.require_faces_of(surface) {
-            Ok(()) => Some(surface.certify_with(map.uvs(), map.face_uvs(), &self.options())?),
-            Err(_) => None,
-        };
+        let certify = || surface.certify_with(map.uvs(), map.face_uvs(), &self.options());
+        let verdict = map.require_faces_of(surface).is_ok().then(certify).transpose()?;
         Ok(CheckedMap { differences, verdict })
     }
 }
@@ -163,37 +167,27 @@ impl CheckedMap {
         let verdict = self.verdict.as_ref();
         let mut rows = vec![row("verdict", &self.verdict_text())];
         rows.extend(verdict.iter().flat_map(|v| summary::distortion_rows(&v.distortion)));
-        if !self.is_certified() {
-            let violations = self.violations();
-            let count = counted(violations.len(), "violation");
-            let text = format!("failed: {count} (elements counted from 0)");
-            rows.push(row("certificate", &text));
-            if verdict.is_some_and(|verdict| verdict.integral.is_some()) {
+        let Some(verdict) = verdict.filter(|_| self.is_certified()) else {
+            if self.verdict.as_ref().is_some_and(|verdict| verdict.integral.is_some()) {
                 rows.push(row("integers", "not checked, since the map is not seamless"));
             }
-            rows.extend(tolerance_row(&violations));
-            rows.extend(listed("violation", &violations));
+            let violations = self.violations();
+            let hint = " (elements counted from 0)";
+            rows.extend(failed_rows("certificate", hint, tolerance_row(&violations), &violations));
             return rows;
-        }
-        let Some(verdict) = verdict else { return rows };
+        };
         if let (Some(cones), Some(certificate)) = (&verdict.cones, &verdict.certificate) {
             rows.extend(summary::certificate_rows(cones, certificate));
         }
         rows.extend(verdict.alignment.iter().map(summary::alignment_row));
         if verdict.aligned == Some(false) {
             let violations = &verdict.alignment_violations;
-            let count = counted(violations.len(), "violation");
-            rows.push(row("alignment", &format!("failed: {count}")));
-            rows.extend(off_axis_row(violations));
-            rows.extend(listed("violation", violations));
+            rows.extend(failed_rows("alignment", "", off_axis_row(violations), violations));
         }
         rows.extend(verdict.integer_certificate.iter().map(summary::integers_row));
         if verdict.integral == Some(false) {
-            let violations = &verdict.integer_violations;
-            let count = counted(violations.len(), "violation");
-            let hint = "maps written with few digits need `--integer-tolerance`";
-            rows.push(row("integers", &format!("failed: {count}; {hint}")));
-            rows.extend(listed("violation", violations));
+            let hint = "; maps written with few digits need `--integer-tolerance`";
+            rows.extend(failed_rows("integers", hint, None, &verdict.integer_violations));
         }
         rows
     }
@@ -223,10 +217,7 @@ impl Command for CheckArgs {
         }
         let surface = session.surface(inspection.clone())?;
         let features = self.features.or(Features::none());
-        let curves = match features.is_none() {
-            true => None,
-            false => Some(surface.features(&features)?),
-        };
+        let curves = (!features.is_none()).then(|| surface.features(&features)).transpose()?;
         let map = self.map.as_ref().map(|path| self.check_map(&surface, path)).transpose()?;
         Ok(Checked { inspection, surface: Some((surface, curves)), map })
     }
@@ -239,8 +230,7 @@ impl Command for CheckArgs {
     }
 
     fn report(&self, checked: &Checked) -> Value {
-        let curves = checked.surface.iter().find_map(|(_, curves)| curves.as_ref());
-        let features = curves.map(FeatureCurves::report);
+        let features = checked.curves().map(FeatureCurves::report);
         let map = checked.map.as_ref().zip(self.map.as_ref());
         let map = map.map(|(map, path)| map.report(path));
         let options = (self.surface, self.options());
@@ -250,17 +240,17 @@ impl Command for CheckArgs {
     fn summary(&self, checked: &Checked) -> Vec<String> {
         let inspection = &checked.inspection;
         let mut rows = summary::surface_rows(inspection.report());
+        let curves = checked.curves().map(FeatureCurves::report);
+        let features = curves.into_iter().flat_map(summary::feature_rows);
         if let (Some(map), Some(path)) = (&checked.map, &self.map) {
-            let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
-            rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
+            rows.extend(features);
             rows.push(row("map", &path.display().to_string()));
             rows.extend(map.rows());
             return rows;
         }
         rows.push(row("verdict", &verdict_text(inspection)));
         rows.extend(summary::size_rows(inspection.report()));
-        let curves = checked.surface.iter().filter_map(|(_, curves)| curves.as_ref());
-        rows.extend(curves.flat_map(|curves| summary::feature_rows(curves.report())));
+        rows.extend(features);
         let notes = &inspection.report().notes;
         rows.extend(notes.iter().map(|note| row("note", &as_options(note))));
         let repairs = &inspection.report().repairs;
@@ -273,11 +263,12 @@ impl Command for CheckArgs {
     }
 
     fn status(&self, checked: &Checked) -> Status {
-        let is_passed = match &checked.map {
-            Some(map) => map.is_passed(),
-            None => checked.inspection.is_surface(),
-        };
-        if is_passed { Status::Done } else { Status::BadInput }
+        let is_surface = checked.inspection.is_surface();
+        if checked.map.as_ref().map_or(is_surface, CheckedMap::is_passed) {
+            Status::Done
+        } else {
+            Status::BadInput
+        }
     }
 }
 
@@ -288,14 +279,20 @@ fn verdict_text(inspection: &Inspection) -> String {
         (n, true) => format!("not a mesh; `--repair` can mend its {}", counted(n, "fault")),
         (n, false) => format!("not a mesh: {}", counted(n, "fault")),
     };
-    match count(Severity::Warning) {
-        0 => {}
-        n => text += &format!(", {}", counted(n, "warning")),
+    if let n @ 1.. = count(Severity::Warning) {
+        text += &format!(", {}", counted(n, "warning"));
     }
     if !inspection.findings().is_empty() {
         text += " (elements counted from 0)";
     }
     text
+}
+
+/// That a check failed, what the worst violation may come from, and the first violations.
+fn failed_rows(label: &str, hint: &str, worst: Option<String>, found: &[Finding]) -> Vec<String> {
+    let text = format!("failed: {}{hint}", counted(found.len(), "violation"));
+    let rows = [row(label, &text)].into_iter().chain(worst);
+    rows.chain(listed("violation", found)).collect()
 }
 
 /// The first findings of every kind, and how many more there are.
@@ -315,10 +312,8 @@ fn worst(violations: &[Finding], kind: &str, number: &str) -> Option<f64> {
 /// How far the worst seam is open, and what that may come from.
 fn tolerance_row(violations: &[Finding]) -> Option<String> {
     let worst = worst(violations, "open-seam", "residual")?;
-    let text = format!(
-        "open by up to {worst:.1e} edge lengths; maps written with few digits need `--tolerance`"
-    );
-    Some(row("seams", &text))
+    let hint = "maps written with few digits need `--tolerance`";
+    Some(row("seams", &format!("open by up to {worst:.1e} edge lengths; {hint}")))
 }
 
 /// How far the worst feature is off, and what that may come from.

@@ -11,7 +11,7 @@ use seamstress::{
     CertifyOptions, CrossField, MapFile, PolygonMesh, SurfaceOptions, write_cones, write_matchings,
 };
 use serde_json::Value;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -97,7 +97,7 @@ impl Command for FieldArgs {
         &self,
         field: &CrossField,
         target: &Target,
-        mut file: &mut dyn io::Write,
+        mut file: &mut dyn Write,
     ) -> io::Result<()> {
         match target.kind {
             Kind::Cones => write_cones(field.cones(), &mut file),

@@ -12,7 +12,7 @@ use seamstress::{
     MapOptions, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -136,12 +136,7 @@ impl Command for IntegerArgs {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
     }
 
-    fn write(
-        &self,
-        map: &IntegerGridMap,
-        _: &Target,
-        mut file: &mut dyn io::Write,
-    ) -> io::Result<()> {
+    fn write(&self, map: &IntegerGridMap, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
         map.write_to(&mut file)
     }
 

@@ -10,7 +10,7 @@ use crate::text::{counted, row};
 use seamstress::lab::{QuadLayout, QuadLayoutMethod};
 use seamstress::{Error, PolygonMesh, TextureOptions};
 use serde_json::Value;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -75,12 +75,7 @@ impl Command for LayoutQuadsArgs {
         draw_map(self.pictures.as_ref(), || layout.pictures(&self.texture))
     }
 
-    fn write(
-        &self,
-        layout: &QuadLayout,
-        _: &Target,
-        mut file: &mut dyn io::Write,
-    ) -> io::Result<()> {
+    fn write(&self, layout: &QuadLayout, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
         layout.write_to(&mut file)
     }
 

@@ -10,7 +10,7 @@ use crate::text::{as_options, counted, row};
 use seamstress::lab::{LaidOut, MethodOptions};
 use seamstress::{Error, Features, SurfaceOptions, TextureOptions, write_cones};
 use serde_json::Value;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -119,7 +119,7 @@ impl Command for MapArgs {
         &self,
         product: &LaidOut,
         target: &Target,
-        mut file: &mut dyn io::Write,
+        mut file: &mut dyn Write,
     ) -> io::Result<()> {
         match (product, target.kind) {
             (LaidOut::Certified(map), Kind::Cones) => write_cones(map.cones(), &mut file),

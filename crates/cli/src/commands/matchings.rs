@@ -10,7 +10,7 @@ use crate::text::{counted, rounded, row};
 use seamstress::lab::{ConsistentMatchings, MatchingOptions};
 use seamstress::{Surface, SurfaceOptions, write_cones, write_matchings};
 use serde_json::Value;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -76,7 +76,7 @@ impl Command for MatchingsArgs {
         &self,
         (surface, made): &Self::Product,
         target: &Target,
-        mut file: &mut dyn io::Write,
+        mut file: &mut dyn Write,
     ) -> io::Result<()> {
         match target.kind {
             Kind::Cones => write_cones(made.cones(), &mut file),

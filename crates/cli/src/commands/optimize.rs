@@ -13,7 +13,7 @@ use seamstress::{
     SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -88,9 +88,8 @@ impl Command for OptimizeArgs {
 
     fn plan(&self) -> Result<Plan, Failure> {
         if self.map.is_none() && !self.features.or(Features::none()).is_none() {
-            let text =
-                "features need a map that follows them, as made by `seamstress map --features`";
-            return Err(Failure::Usage(format!("{}: {text}", self.mesh.display())));
+            let hint = "a map that follows them, as made by `seamstress map --features`";
+            return Err(Failure::Usage(format!("{}: features need {hint}", self.mesh.display())));
         }
         let mut files = map_pictures(self.pictures.as_ref());
         files.extend(targets(Kind::Report, &self.report));
@@ -116,12 +115,7 @@ impl Command for OptimizeArgs {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
     }
 
-    fn write(
-        &self,
-        map: &Self::Product,
-        _: &Target,
-        mut file: &mut dyn io::Write,
-    ) -> io::Result<()> {
+    fn write(&self, map: &Self::Product, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
         map.write_to(&mut file)
     }
 
@@ -141,10 +135,8 @@ impl Command for OptimizeArgs {
                 1 => String::new(),
                 _ => format!("component {k}: "),
             };
-            let what = match self.options.bound {
-                Some(_) => Objective::SymmetricDirichlet,
-                None => self.options.objective,
-            };
+            let energy = self.options.bound.map(|_| Objective::SymmetricDirichlet);
+            let what = energy.unwrap_or(self.options.objective);
             let (before, after) = (rounded(stats.before), rounded(stats.after));
             let text = format!("{whose}{what} {before} -> {after} ({})", stats.ending);
             rows.push(row("objective", &text));

@@ -12,7 +12,7 @@ use seamstress::{
     ViewOptions,
 };
 use serde_json::Value;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -98,7 +98,7 @@ impl Command for QuadArgs {
         self.files.pictures(quads, &self.view)
     }
 
-    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn io::Write) -> io::Result<()> {
+    fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn Write) -> io::Result<()> {
         quad_files::write(quads, target, file)
     }
 

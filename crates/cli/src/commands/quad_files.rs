@@ -4,7 +4,7 @@ use super::{inputs, targets};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
 use seamstress::{Error, QuadMesh, ViewOptions};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The quad mesh, its report and its picture.
@@ -47,10 +47,6 @@ impl QuadFiles {
     }
 }
 
-pub(super) fn write(
-    quads: &QuadMesh,
-    target: &Target,
-    mut file: &mut dyn io::Write,
-) -> io::Result<()> {
+pub(super) fn write(quads: &QuadMesh, target: &Target, mut file: &mut dyn Write) -> io::Result<()> {
     quads.write_as(&target.path, &mut file)
 }
