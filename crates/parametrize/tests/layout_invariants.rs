@@ -23,6 +23,7 @@ use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_o
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::space::{LinearSpace, seam_residual, seamless_space};
+use seamstress_parametrize::progress::{Watch, go_on};
 use seamstress_parametrize::quarter::{rotation, turn};
 use seamstress_parametrize::rounding::{RoundingOptions, repair, round};
 use seamstress_parametrize::{MapOptions, make_map};
@@ -226,7 +227,7 @@ fn a_mirrored_layout_is_all_defects() {
     let (mesh, metric) = surface(&kit::cube());
     let FramedCut { matched, frames } = rounded(&mesh, &metric);
     let mut layout = ExactLayout::new(&Sectors::unaligned(&mesh), &metric, &matched).unwrap();
-    let y = layout.arap(&frames, 20).unwrap();
+    let y = layout.arap(&frames, 20, &mut Watch::new(&mut go_on, 0, 1)).unwrap();
     assert!(layout.defects(&Sectors::unaligned(&mesh), &y).none());
     let nothing = vec![0.0; y.len()];
     assert_eq!(layout.defects(&Sectors::unaligned(&mesh), &nothing).flips.len(), 12);

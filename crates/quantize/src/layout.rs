@@ -19,6 +19,7 @@ use seamstress_parametrize::energy::{SymmetricDirichlet, Triangle, triangles};
 use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::map::SeamlessMap;
+use seamstress_parametrize::progress::Watch;
 
 /// The area does not depend on free unknowns if its derivatives by them are below this part of the others: rounding.
 const FREE_OF_AREA: f64 = 1e-9;
@@ -46,20 +47,24 @@ impl<'a> SeamlessLayout<'a> {
     /// Reads a seamless map of a connected mesh with its aligned edges.
     ///
     /// # Errors
-    /// [`QuantizationFailure::Unreadable`] if the map flips when its seams are closed exactly.
+    /// [`QuantizationFailure::Unreadable`] if the map flips when its seams are closed exactly, and where the observer
+    /// breaks.
     pub(crate) fn new(
         mesh: &'a TriMesh,
         metric: &Metric,
         map: &SeamlessMap,
         aligned: &EdgeSet,
+        watch: &mut Watch<'_, '_>,
     ) -> Result<Self, QuantizationFailure> {
         let (layout, mut y) = ExactLayout::from_map(mesh, metric, map)?;
+        watch.pulse()?;
         layout.rescale(&mut y);
         let z = layout.expand(&y);
         let ExactLayout { cut, matching, index, .. } = layout;
         let needs = grid_needs(mesh, &index, aligned, |h| z[cut.wedge[h] as usize]);
         let space = IntegerSpace::new(mesh, &cut, &matching, &needs)?;
         let (coordinates, y) = space.read(&z);
+        watch.pulse()?;
         let triangles = triangles(mesh, metric, &cut);
         let problem = LayoutProblem::with_held(space.linear()?, triangles, space.n_free())?;
         let aligned = aligned.vertex_pairs(mesh);
@@ -105,28 +110,38 @@ impl<'a> SeamlessLayout<'a> {
     /// the area.
     ///
     /// # Errors
-    /// When a linear system cannot be solved.
+    /// When a linear system cannot be solved, and where the observer breaks.
     pub(crate) fn reduced_energy(
         &mut self,
         keeps_area: bool,
+        watch: &mut Watch<'_, '_>,
     ) -> Result<ReducedEnergy, QuantizationFailure> {
         let z = self.z();
         self.problem.linearize(&SymmetricDirichlet, &z);
-        self.reduce(keeps_area)
+        self.reduce(keeps_area, watch)
     }
 
     /// The energy that preserves Jacobians as a function of the coordinates; it stays factored.
     ///
     /// # Errors
-    /// When a linear system cannot be solved.
-    pub(crate) fn reduced_dirichlet(&mut self) -> Result<ReducedEnergy, QuantizationFailure> {
+    /// When a linear system cannot be solved, and where the observer breaks.
+    pub(crate) fn reduced_dirichlet(
+        &mut self,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<ReducedEnergy, QuantizationFailure> {
         self.problem.assemble_dirichlet();
-        self.reduce(false)
+        self.reduce(false, watch)
     }
 
-    fn reduce(&mut self, keeps_area: bool) -> Result<ReducedEnergy, QuantizationFailure> {
+    fn reduce(
+        &mut self,
+        keeps_area: bool,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<ReducedEnergy, QuantizationFailure> {
+        watch.pulse()?;
         self.problem.factorize(SHIFT)?;
-        let matrix = schur_complement(&self.problem, &self.space);
+        let matrix = schur_complement(&self.problem, &self.space, watch)?;
+        watch.pulse()?;
         let turnable = self.aligned.is_empty().then_some(self.coordinates.as_slice());
         let area = if keeps_area { self.area_form() } else { None };
         Ok(ReducedEnergy::new(&matrix, turnable, area)?)

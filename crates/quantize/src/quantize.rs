@@ -176,7 +176,10 @@ impl<'p> Components<'p, '_, '_> {
             let metric = Metric::from_positions(&piece.mesh, &positions);
             let uvs = piece.corner_uvs(map.corner_uvs());
             let map = SeamlessMap::certify(&piece.mesh, uvs, &options.given)?;
-            ComponentSearch::new(piece, &metric, &map, &aligned.restrict(piece), options)
+            let mut watch = Watch::new(all.observer, k, all.pieces.len());
+            watch.enter(Stage::Integers)?;
+            let aligned = aligned.restrict(piece);
+            ComponentSearch::new(piece, &metric, &map, &aligned, options, &mut watch)
         })?;
         Ok(())
     }

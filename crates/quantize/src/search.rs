@@ -102,9 +102,11 @@ impl<'a> ComponentSearch<'a> {
         map: &SeamlessMap,
         aligned: &EdgeSet,
         options: &'a QuantizeOptions,
+        watch: &mut Watch<'_, '_>,
     ) -> Result<Self, QuantizationFailure> {
         let clock = Instant::now();
-        let read = |metric: &Metric| SeamlessLayout::new(&piece.mesh, metric, map, aligned);
+        let mut read =
+            |metric: &Metric| SeamlessLayout::new(&piece.mesh, metric, map, aligned, watch);
         let opened = metric.opened(&piece.mesh);
         let mut layout = match read(opened.as_ref().unwrap_or(metric)) {
             // Triangles too thin for arithmetic open up where every edge is longer.
@@ -116,9 +118,9 @@ impl<'a> ComponentSearch<'a> {
         };
         let energy = match options.rounding {
             RoundingMethod::Constrained => {
-                layout.reduced_energy(matches!(options.size, GridSize::Quads(_)))?
+                layout.reduced_energy(matches!(options.size, GridSize::Quads(_)), watch)?
             }
-            RoundingMethod::Greedy => layout.reduced_dirichlet()?,
+            RoundingMethod::Greedy => layout.reduced_dirichlet(watch)?,
         };
         let obstacles = Obstacles::new(&layout)?;
         let stats = QuantizationStats {

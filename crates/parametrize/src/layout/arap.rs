@@ -2,6 +2,7 @@
 
 use super::problem::LayoutProblem;
 use crate::energy::Triangle;
+use crate::progress::{Cancelled, Watch};
 use crate::quarter::direction;
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
@@ -84,9 +85,18 @@ impl<'p> Poisson<'p> {
     }
 
     /// Local/global iterations (Liu et al. 2008) from frames; returns the unknowns.
-    pub fn arap(&mut self, mut frames_now: Vec<Complex64>, iterations: usize) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn arap(
+        &mut self,
+        mut frames_now: Vec<Complex64>,
+        iterations: usize,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Vec<f64>, Cancelled> {
         let mut y = vec![0.0; self.problem.space().n_unknowns()];
         for k in 0..iterations {
+            watch.pulse()?;
             if k > 0 {
                 let z = self.problem.space().expand(&y);
                 frames_now = frames(self.problem.triangles(), &z);
@@ -94,6 +104,6 @@ impl<'p> Poisson<'p> {
             let targets: Vec<_> = frames_now.iter().map(|&r| [r, r * Complex64::I]).collect();
             y = self.solve(&targets);
         }
-        y
+        Ok(y)
     }
 }

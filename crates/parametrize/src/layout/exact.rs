@@ -9,7 +9,7 @@ use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vert
 use crate::energy::{Energy, Triangle, extremes, is_positive, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
-use crate::progress::{Cancelled, Watch};
+use crate::progress::{Cancelled, SolveError, Watch};
 use crate::quality::{Distortion, Measure, SingularValues};
 use crate::quarter::{turn, within};
 use num_complex::Complex64;
@@ -257,14 +257,15 @@ impl ExactLayout {
     /// As-rigid-as-possible layout that starts from frames in the gauge of the all-seam cut.
     ///
     /// # Errors
-    /// When the system cannot be factored.
+    /// [`SolveError`].
     pub fn arap(
         &mut self,
         frames: &[Complex64],
         iterations: usize,
-    ) -> Result<Vec<f64>, NotPositiveDefinite> {
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Vec<f64>, SolveError> {
         let turned = frames.iter().zip(self.gauge.iter()).map(|(&r, &k)| turn(r, k)).collect();
-        Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations))
+        Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations, watch)?)
     }
 
     /// Images of the axes under a map given by its corners, turned into this gauge.

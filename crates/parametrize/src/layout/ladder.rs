@@ -61,7 +61,7 @@ pub fn lay_out(
             return held(space, y, Route::Isometric, 0);
         }
     }
-    let mut y = space.arap(frames, RIGID_ITERATIONS)?;
+    let mut y = space.arap(frames, RIGID_ITERATIONS, watch)?;
     let mut defects = space.defects(sectors, &y);
     if defects.none() {
         return held(space, y, Route::Rigid, 0);
@@ -77,6 +77,7 @@ pub fn lay_out(
     if effort == LayoutEffort::Brief {
         return Ok(Err(defects));
     }
+    watch.pulse()?;
     let closed = barrier(sectors, metric, matched, watch)?;
     let y = space.project(sectors.mesh(), cut, &closed.z)?;
     match space.defects(sectors, &y) {

@@ -98,7 +98,9 @@ pub(super) fn with_fewer_cones(
         if stats.cancelled + stats.moved == 0 {
             break;
         }
+        watch.pulse()?;
         let matched = fix_holonomy(sectors, metric, cleaned.matched)?;
+        watch.pulse()?;
         let cleaned = FramedCut { matched, frames: cleaned.frames };
         let laid_out = lay_out(sectors, metric, &cleaned, effort, watch);
         let Ok(Ok(layout)) = unless_cancelled(laid_out)? else { continue };
