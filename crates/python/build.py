@@ -7,6 +7,7 @@ needs maturin; for manylinux2014 also ziglang and auditwheel.
 from __future__ import annotations
 
 import argparse
+import os
 import shutil
 import subprocess
 import sys
@@ -26,7 +27,9 @@ def build(folder: Path, native: bool) -> list[Path]:
         command += ["--zig", "--compatibility", MANYLINUX]
     elif sys.platform == "linux":
         command += ["--compatibility", "linux"]
-    subprocess.run(command, check=True, cwd=HERE)
+    # Where its tools are, also if its environment is not activated.
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    subprocess.run(command, check=True, cwd=HERE, env={**os.environ, "PATH": path})
     wheel = next(folder.glob("*.whl"))
     if native:
         return [wheel]

@@ -109,8 +109,8 @@ impl Map {
         self.0.report().map_err(|cause| errors::internal(py, &cause.to_string()))
     }
 
-    /// The content of an OBJ file.
-    fn obj<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+    /// The content of a file of any name: OBJ.
+    fn file<'py>(&self, py: Python<'py>, _name: &str) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| self.0.obj())?))
     }
 

@@ -7,7 +7,8 @@ use crate::quads::{CrossField, Curves, Quads};
 use crate::run::Run;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
-use seamstress::{Error, Inspection, Measurements, SurfaceOptions};
+use seamstress::{Error, Inspection, SurfaceOptions};
+use serde::de::DeserializeOwned;
 use std::path::PathBuf;
 
 /// A surface.
@@ -16,23 +17,36 @@ pub(crate) struct Surface(seamstress::Surface);
 
 /// UVs and the three of each face, as bytes.
 type GivenMap<'a> = (&'a [u8], &'a [u8]);
-/// UVs and the three of each face.
-type Uvs = (Vec<[f64; 2]>, Vec<[u32; 3]>);
-
-fn uvs((uvs, face_uvs): GivenMap<'_>) -> Uvs {
-    (rows(uvs), rows(face_uvs))
-}
 
 impl Surface {
-    /// Makes something of the surface under the watch of a run.
-    fn make<T: Send + 'static>(
+    /// Makes something of the surface under the watch of a run; options as JSON.
+    fn make<T: Send + 'static, O: DeserializeOwned + Send + 'static>(
         &self,
         py: Python<'_>,
+        settings: &str,
         run: Run,
-        work: impl FnOnce(&seamstress::Surface) -> Result<T, Error> + Send + 'static,
+        work: impl FnOnce(&seamstress::Surface, &O) -> Result<T, Error> + Send + 'static,
     ) -> PyResult<T> {
+        let settings: O = options(py, settings)?;
         let surface = self.0.clone();
-        run.call(py, move |context| work(&surface.with_context(context)))
+        run.call(py, move |context| work(&surface.with_context(context), &settings))
+    }
+
+    /// Makes something of a map of the surface.
+    fn make_of<T: Send + 'static, O: DeserializeOwned + Send + 'static>(
+        &self,
+        py: Python<'_>,
+        (uvs, face_uvs): GivenMap<'_>,
+        settings: &str,
+        run: Run,
+        work: impl FnOnce(&seamstress::Surface, &[[f64; 2]], &[[u32; 3]], &O) -> Result<T, Error>
+        + Send
+        + 'static,
+    ) -> PyResult<T> {
+        let (uvs, face_uvs) = (rows(uvs), rows(face_uvs));
+        self.make(py, settings, run, move |surface, options| {
+            work(surface, &uvs, &face_uvs, options)
+        })
     }
 }
 
@@ -98,54 +112,45 @@ impl Surface {
 
     /// A seamless map.
     fn parametrize(&self, py: Python<'_>, settings: &str, run: Run) -> PyResult<Map> {
-        let settings = options(py, settings)?;
-        self.make(py, run, move |surface| surface.parametrize(&settings)).map(Map::new)
+        self.make(py, settings, run, seamstress::Surface::parametrize).map(Map::new)
     }
 
     /// An integer-grid map.
     fn integer_map(&self, py: Python<'_>, settings: &str, run: Run) -> PyResult<Map> {
-        let settings = options(py, settings)?;
-        self.make(py, run, move |surface| surface.integer_map(&settings)).map(Map::new)
+        self.make(py, settings, run, seamstress::Surface::integer_map).map(Map::new)
     }
 
-    /// The integer-grid map of a seamless map.
+    /// The integer-grid map of a seamless map; settings are how this is certified, and the options.
     fn integer_map_of(
         &self,
         py: Python<'_>,
         map: GivenMap<'_>,
-        certify: &str,
         settings: &str,
         run: Run,
     ) -> PyResult<Map> {
-        let (certify, settings) = (options(py, certify)?, options(py, settings)?);
-        let (uvs, face_uvs) = uvs(map);
-        let make = move |surface: &seamstress::Surface| {
-            surface.integer_map_of(&uvs, &face_uvs, &certify, &settings)
+        let make = |surface: &seamstress::Surface, uvs: &[_], face_uvs: &[_], both: &(_, _)| {
+            surface.integer_map_of(uvs, face_uvs, &both.0, &both.1)
         };
-        self.make(py, run, make).map(Map::new)
+        self.make_of(py, map, settings, run, make).map(Map::new)
     }
 
     /// A quad mesh.
     fn quad_mesh(&self, py: Python<'_>, settings: &str, run: Run) -> PyResult<Quads> {
-        let settings = options(py, settings)?;
-        self.make(py, run, move |surface| surface.quad_mesh(&settings)).map(Quads)
+        self.make(py, settings, run, seamstress::Surface::quad_mesh).map(Quads)
     }
 
-    /// The quads of an integer-grid map.
+    /// The quads of an integer-grid map; settings are features, and the options.
     fn extract_quads(
         &self,
         py: Python<'_>,
         map: GivenMap<'_>,
-        features: &str,
         settings: &str,
         run: Run,
     ) -> PyResult<Quads> {
-        let (features, settings) = (options(py, features)?, options(py, settings)?);
-        let (uvs, face_uvs) = uvs(map);
-        let make = move |surface: &seamstress::Surface| {
-            surface.extract_quads(&uvs, &face_uvs, &features, &settings)
+        let make = |surface: &seamstress::Surface, uvs: &[_], face_uvs: &[_], both: &(_, _)| {
+            surface.extract_quads(uvs, face_uvs, &both.0, &both.1)
         };
-        self.make(py, run, make).map(Quads)
+        self.make_of(py, map, settings, run, make).map(Quads)
     }
 
     /// Another objective minimised, from a map or for a disk.
@@ -156,13 +161,11 @@ impl Surface {
         settings: &str,
         run: Run,
     ) -> PyResult<Map> {
-        let settings = options(py, settings)?;
-        let map = map.map(uvs);
-        let make = move |surface: &seamstress::Surface| match map {
-            Some((uvs, face_uvs)) => surface.optimize(&uvs, &face_uvs, &settings),
-            None => surface.flatten_disk(&settings),
+        let made = match map {
+            Some(map) => self.make_of(py, map, settings, run, seamstress::Surface::optimize),
+            None => self.make(py, settings, run, seamstress::Surface::flatten_disk),
         };
-        self.make(py, run, make).map(Map::new)
+        made.map(Map::new)
     }
 
     /// Whether a map is seamless: whether all that was asked for holds, and the verdict as JSON.
@@ -173,11 +176,7 @@ impl Surface {
         settings: &str,
         run: Run,
     ) -> PyResult<(bool, String)> {
-        let settings = options(py, settings)?;
-        let (uvs, face_uvs) = uvs(map);
-        let make =
-            move |surface: &seamstress::Surface| surface.certify_with(&uvs, &face_uvs, &settings);
-        let verdict = self.make(py, run, make)?;
+        let verdict = self.make_of(py, map, settings, run, seamstress::Surface::certify_with)?;
         Ok((verdict.is_passed(), json(py, &verdict)?))
     }
 
@@ -189,10 +188,7 @@ impl Surface {
         settings: &str,
         run: Run,
     ) -> PyResult<(String, Vec<Bound<'py, PyByteArray>>)> {
-        let settings = options(py, settings)?;
-        let (uvs, face_uvs) = uvs(map);
-        let make = move |surface: &seamstress::Surface| surface.measure(&uvs, &face_uvs, &settings);
-        let measured: Measurements = self.make(py, run, make)?;
+        let measured = self.make_of(py, map, settings, run, seamstress::Surface::measure)?;
         let values = measured.measures.iter().map(|one| array(py, &one.values));
         Ok((json(py, &measured)?, values.collect::<PyResult<_>>()?))
     }
@@ -205,15 +201,11 @@ impl Surface {
         settings: &str,
         run: Run,
     ) -> PyResult<CrossField> {
-        let settings = options(py, settings)?;
-        let (uvs, face_uvs) = uvs(map);
-        let make = move |surface: &seamstress::Surface| surface.field(&uvs, &face_uvs, &settings);
-        self.make(py, run, make).map(CrossField)
+        self.make_of(py, map, settings, run, seamstress::Surface::field).map(CrossField)
     }
 
     /// Feature edges.
     fn features(&self, py: Python<'_>, sources: &str, run: Run) -> PyResult<Curves> {
-        let sources = options(py, sources)?;
-        self.make(py, run, move |surface| surface.features(&sources)).map(Curves)
+        self.make(py, sources, run, seamstress::Surface::features).map(Curves)
     }
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-import random
+import re
 import shutil
 import signal
 import subprocess
@@ -12,19 +12,19 @@ import sys
 import time
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
+import kills
 import numpy as np
 import pytest
+from kills import files, rows, table
 from shapes import cube, grid, sphere
 
 from seamstress_mesh.batch import inputs
 from seamstress_mesh.batch.__main__ import main
-from seamstress_mesh.batch.manifest import NAME, Manifest
-from seamstress_mesh.batch.task import Limits, Outcome, Task, flat, run
+from seamstress_mesh.batch.task import Limits, Task, flat, run
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="limits and signals of Unix")
-#: Columns that vary from run to run.
-VARY = {"seconds", "cpu_seconds", "memory_bytes", "worker", "finished", "attempts"}
 
 
 def write_obj(path: Path, vertices: Any, faces: Any) -> None:
@@ -45,32 +45,6 @@ def meshes(tmp_path: Path) -> Path:
     (folder / "empty.obj").write_text("")
     (folder / "notes.txt").write_text("no mesh")
     return folder
-
-
-def rows(folder: Path) -> dict[str, dict[str, Any]]:
-    manifest = Manifest(folder / NAME)
-    job = manifest.jobs()[-1]["id"]
-    found = {row["name"]: row for row in manifest.rows(job)}
-    manifest.close()
-    return found
-
-
-def table(folder: Path) -> dict[str, Any]:
-    """What has to be the same in every run: all but costs and who bore them."""
-
-    def same(row: dict[str, Any]) -> dict[str, Any]:
-        costs = ("cost.", "seconds", "files.")
-        metrics = {k: v for k, v in row["metrics"].items() if not any(cost in k for cost in costs)}
-        return {**{k: v for k, v in row.items() if k not in VARY}, "metrics": metrics}
-
-    return {name: same(row) for name, row in rows(folder).items()}
-
-
-def files(folder: Path) -> dict[str, bytes]:
-    """All results, by their names."""
-    kinds = ("meshes", "pictures")
-    found = [path for kind in kinds for path in (folder / kind).rglob("*") if path.is_file()]
-    return {str(path.relative_to(folder)): path.read_bytes() for path in found}
 
 
 def test_every_file_has_a_row_and_is_done_once(meshes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -121,22 +95,38 @@ def test_the_table_is_exported(meshes: Path, tmp_path: Path) -> None:
 
 
 def test_limits_cost_their_own_row(meshes: Path, tmp_path: Path) -> None:
-    # One that never ends, and one that asks for more memory than it may have.
-    os.mkfifo(meshes / "endless.obj")
+    # One that never ends, one that is large when it is unpacked, and one that takes more memory than it may have.
+    kills.plant(meshes / "planted", 2e9)
     write_obj(meshes / "large.obj", *sphere(100, 150))
     out = tmp_path / "out"
     call = [str(meshes), "-o", str(out), "--workers", "2", "--timeout", "10", "--memory", "0.06", "--quiet"]
     assert main(call) == 0
     status = {name: row["status"] for name, row in rows(out).items()}
-    assert status["endless.obj"] == "time-limit" and status["large.obj"] == "memory-limit"
+    assert status["planted/endless.obj"] == "time-limit"
+    assert status["large.obj"] == status["planted/hog.obj.gz"] == "memory-limit"
     assert sum(one == "ok" for one in status.values()) == 4
     # With the same limits they are not tried again, with others they are.
     finished = {name: row["finished"] for name, row in rows(out).items()}
     assert main(call) == 0
     assert {name: row["finished"] for name, row in rows(out).items()} == finished
-    (meshes / "endless.obj").unlink()
+    shutil.rmtree(meshes / "planted")
     main([*call, "--memory", "4", "--timeout", "300"])
     assert rows(out)["large.obj"]["status"] == "ok"
+
+
+def test_memory_asked_for_while_running(tmp_path: Path) -> None:
+    # Two triangles with a grid of thirty million cells, which would take 30 GB.
+    for name, w, h in (("few", 6, 5), ("many", 6000, 5000)):
+        corners = [(0, 0), (w, 0), (w, h), (0, h)]
+        lines = [f"v {x / w} {y / h} 0" for x, y in corners] + [f"vt {x} {y}" for x, y in corners]
+        path = tmp_path / "in" / f"{name}.obj"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("\n".join([*lines, "f 1/1 2/2 3/3", "f 1/1 3/3 4/4", ""]))
+    out = tmp_path / "out"
+    assert main([str(tmp_path / "in"), "-o", str(out), "--task", "extract", "--memory", "1", "--quiet"]) == 0
+    found = rows(out)
+    assert (found["few.obj"]["status"], found["few.obj"]["metrics"]["quads.count"]) == ("ok", 30)
+    assert found["many.obj"]["status"] == "memory-limit" and set(files(out)) == {"meshes/few.obj.obj"}
 
 
 def test_cpu_limit(tmp_path: Path) -> None:
@@ -152,58 +142,50 @@ def test_usage_errors_are_rows_too(meshes: Path, tmp_path: Path) -> None:
     assert row["status"] == "usage" and "--no-such-flag" in row["message"]
 
 
-def children_of(pid: int) -> list[int]:
-    found = subprocess.run(["ps", "-e", "-o", "pid=,ppid="], capture_output=True, text=True, check=True).stdout
-    pairs = (map(int, line.split()) for line in found.splitlines())
-    return [child for child, parent in pairs if parent == pid]
+linux_only = pytest.mark.skipif(sys.platform != "linux", reason="finds processes in /proc")
 
 
-def commands_in(folder: Path) -> list[int]:
-    """The tasks that run in a folder, whoever their parents are."""
-    found = subprocess.run(["ps", "-e", "-o", "pid=,args="], capture_output=True, text=True, check=True).stdout
-    return [int(line.split()[0]) for line in found.splitlines() if "_command.py" in line and str(folder) in line]
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="needs ps and the signal on a parent's death")
-@pytest.mark.skipif(not shutil.which("ps"), reason="needs ps")
-def test_kills_change_nothing(meshes: Path, tmp_path: Path) -> None:
+@linux_only
+@pytest.mark.parametrize("engine", ["local", "ray"])
+def test_kills_change_nothing(engine: str, tmp_path: Path) -> None:
+    if engine == "ray":
+        pytest.importorskip("ray")
+    # Small folders first: names of sockets are short.
     for k in range(6):
-        write_obj(meshes / f"more_{k}.obj", *sphere(20 + k, 30))
-    undisturbed, out = tmp_path / "undisturbed", tmp_path / "out"
-    main([str(meshes), "-o", str(undisturbed), "--workers", "2", "--quiet"])
-    command = [sys.executable, "-m", "seamstress_mesh.batch", str(meshes), "-o", str(out), "--workers", "2", "--quiet"]
-    chance = random.Random(7)
-    for victim in ("child", "driver", "driver"):
-        batch = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-        time.sleep(chance.uniform(0.5, 1.5))
-        children = children_of(batch.pid)
-        if victim == "child" and children:
-            os.kill(chance.choice(children), signal.SIGKILL)
-            batch.wait(timeout=120)
-            # It was tried again.
-            assert all(row["status"] in ("ok", "refused") for row in rows(out).values())
-            shutil.rmtree(out / "meshes" / "deep")
-        elif victim == "driver":
-            batch.kill()
-            batch.wait()
-            time.sleep(0.5)
-            assert not commands_in(out)
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    assert table(out) == {name: row for name, row in table(undisturbed).items()}
-    assert files(out) == files(undisturbed)
-    assert not list((out / ".work").iterdir()) if (out / ".work").exists() else True
+        write_obj(tmp_path / "in" / "of one size" / f"sphere {k}.obj", *sphere(40 + k, 60))
+    write_obj(tmp_path / "in" / "bad.obj", np.eye(3), [[0, 1, 2], [0, 1, 2]])
+    options = ["--workers", "2", "--no-pictures"]
+    _, faults = kills.demonstrate([str(tmp_path / "in")], [engine], 1, tmp_path, 7, options)
+    assert not faults, faults
+    assert [row["status"] for row in rows(tmp_path / engine).values()] == ["refused", *["ok"] * 6]
+
+
+@linux_only
+def test_differences_are_found(meshes: Path, tmp_path: Path) -> None:
+    one, other = tmp_path / "one", tmp_path / "other"
+    for out in (one, other):
+        main([str(meshes), "-o", str(out), "--quiet", "--no-pictures"])
+    assert not kills.differences(one, other)
+    (other / "meshes" / "grid.obj.obj").write_text("half")
+    (other / ".work" / "left").mkdir(parents=True)
+    assert len(kills.differences(one, other)) == 2
+    (meshes / "grid.obj").unlink()
+    main([str(meshes), "-o", str(other), "--quiet", "--no-pictures", "--", "--no-tau-polish"])
+    assert any("only in one table" in fault for fault in kills.differences(one, other))
 
 
 def test_interrupts_end_the_children(meshes: Path, tmp_path: Path) -> None:
     write_obj(meshes / "large.obj", *sphere(200, 300))
     out = tmp_path / "out"
     command = [sys.executable, "-m", "seamstress_mesh.batch", str(meshes), "-o", str(out), "--workers", "1"]
-    batch = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    environment = {**os.environ, kills.MARK: str(out)}
+    batch = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment)
     time.sleep(2.0)
+    assert sys.platform != "linux" or any("_command.py" in command for _, command in kills.processes(str(out)).values())
     batch.send_signal(signal.SIGINT)
     _, said = batch.communicate(timeout=30)
     assert batch.returncode == 1 and "the same command goes on from here" in said
-    assert not commands_in(out)
+    assert not kills.processes(str(out))
 
 
 def test_one_driver_at_a_time(meshes: Path, tmp_path: Path) -> None:
@@ -226,29 +208,82 @@ def test_comparison(meshes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     tau = [line for line in said.splitlines() if line.startswith("tau")][-1]
     # Without the polish tau is larger, where it is not exact already.
     assert int(tau.split()[3]) >= 2 and int(tau.split()[2]) == 0
+    # In one folder with the run before: back again, it is better.
+    main([str(meshes), "-o", str(new), "--quiet", "--no-pictures", "--compare", str(new)])
+    tau = [line for line in capsys.readouterr().out.splitlines() if line.startswith("tau")][-1]
+    assert int(tau.split()[3]) == 0 and int(tau.split()[2]) >= 2
 
 
 def test_inputs(meshes: Path, tmp_path: Path) -> None:
+    def find(given: list[str]) -> dict[str, str]:
+        return inputs.find(given, tmp_path / "out")
+
     paths = sorted(str(path) for path in meshes.rglob("*.obj"))
-    assert sorted(inputs.find([str(meshes)]).values()) == paths
-    assert sorted(inputs.find([str(meshes / "**" / "*.obj")]).values()) == paths
+    assert sorted(find([str(meshes)]).values()) == paths
+    assert sorted(find([str(meshes / "**" / "*.obj")]).values()) == paths
     # Two of one name have names of their own.
-    assert len(inputs.find([str(meshes / "sphere.obj"), str(meshes / "deep" / "sphere.obj")])) == 2
+    assert len(find([str(meshes / "sphere.obj"), str(meshes / "deep" / "sphere.obj")])) == 2
     listed = meshes / "list.txt"
     listed.write_text("# some\nsphere.obj\n\ndeep/cube.obj\n")
-    assert set(inputs.find([str(listed)])) == {"sphere.obj", "deep/cube.obj"}
+    assert set(find([str(listed)])) == {"sphere.obj", "deep/cube.obj"}
     with (meshes / "table.csv").open("w", newline="") as file:
         csv.writer(file).writerows([["kind", "mesh"], ["round", "sphere.obj"]])
-    assert inputs.find([str(meshes / "table.csv")]) == {"sphere.obj": str(meshes / "sphere.obj")}
+    assert find([str(meshes / "table.csv")]) == {"sphere.obj": str(meshes / "sphere.obj")}
     parquet = pytest.importorskip("pyarrow.parquet")
     import pyarrow
 
-    parquet.write_table(pyarrow.table({"path": ["deep/cube.obj"]}), meshes / "table.parquet")
-    assert set(inputs.find([str(meshes / "table.parquet")])) == {"deep/cube.obj"}
+    columns = {"kind": ["box"], "faces": [192], "path": ["deep/cube.obj"], "by": [None]}
+    parquet.write_table(pyarrow.table(columns), meshes / "table.parquet")
+    assert set(find([str(meshes / "table.parquet")])) == {"deep/cube.obj"}
     for wrong in ("none.obj", "nothing", str(meshes / "notes.md")):
         with pytest.raises(inputs.InputsError):
-            inputs.find([wrong])
+            find([wrong])
     assert main(["nothing", "-o", str(tmp_path / "out")]) == 2
+
+
+def test_names_of_any_kind(tmp_path: Path) -> None:
+    # As they come: blanks, letters of any script, two of one name, bytes that are no text, a link to itself.
+    folder, out = tmp_path / "my meshes", tmp_path / "my meshes" / "out"
+    places = ["a b/grid 1.obj", "c/grid 1.obj", "\u00e4\u732b 'x' & #1?.obj", os.fsdecode(b"b\xe4d.obj")]
+    for place in places:
+        write_obj(folder / place, *grid(3))
+    (folder / "c" / "again").symlink_to(folder)
+    call = [str(folder), "-o", str(out), "--quiet"]
+    assert main(call) == 0
+    names = {*places[:3], "b\\xe4d.obj"}
+    assert {name: row["status"] for name, row in rows(out).items()} == dict.fromkeys(names, "ok")
+    assert set(files(out)) == {f"meshes/{name}.obj" for name in names} | {f"pictures/{name}.png" for name in names}
+    # Its own results are no meshes of the next run, and what is done is found.
+    finished = {name: row["finished"] for name, row in rows(out).items()}
+    assert main(call) == 0
+    assert {name: row["finished"] for name, row in rows(out).items()} == finished
+    page = (out / "index.html").read_text()
+    assert all((out / unquote(link)).exists() for link in re.findall("(?:href|src)='([^']*)'", page))
+
+
+def test_results_are_kept_where_no_picture_can_be_drawn(tmp_path: Path) -> None:
+    vertices, faces = sphere()
+    write_obj(tmp_path / "in" / "point.obj", 0.0 * vertices, faces)
+    out = tmp_path / "out"
+    main([str(tmp_path / "in"), "-o", str(out), "--quiet"])
+    assert rows(out)["point.obj"]["status"] == "ok" and set(files(out)) == {"meshes/point.obj.obj"}
+
+
+def test_what_cannot_be_is_an_error(meshes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("")
+    (tmp_path / "no.csv").write_text("\ufeffsize,mesh\n3,\n")
+    call = [str(meshes), "-o", str(tmp_path / "out"), "--quiet"]
+    for wrong, said in (
+        ([str(meshes), "-o", str(tmp_path / "file" / "out")], "file"),
+        ([str(tmp_path / "no.csv"), *call[1:]], "row 1"),
+        ([str(tmp_path), "-o", str(meshes.parent)], "no mesh was found"),
+    ):
+        assert main(wrong) == 2
+        assert said in capsys.readouterr().err
+    for wrong in (["--workers", "0"], ["--timeout", "-1"], ["--memory", "nan"], ["--again", "crash"], ["--task", "make"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*call, *wrong])
+        assert ended.value.code == 2 and wrong[0] in capsys.readouterr().err
 
 
 def test_reports_are_flattened() -> None:

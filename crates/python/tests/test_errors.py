@@ -88,6 +88,26 @@ def test_no_certified_map() -> None:
     assert s.parametrize(features=sides).report["features"]["dropped"]
 
 
+def test_other_results_that_cannot_be_vouched_for() -> None:
+    # A flat square in one cell, whose sides are glued: its quad has one vertex four times.
+    v, f = grid(4)
+    x, y = np.arange(25) % 5, np.arange(25) // 5
+    a, b = 2 * np.pi * x / 4, 2 * np.pi * y / 4
+    v = np.column_stack([(3 + np.cos(b)) * np.cos(a), (3 + np.cos(b)) * np.sin(a), np.sin(b)])
+    glued = (x % 4) + 5 * (y % 4)
+    used, numbered = np.unique(glued[f], return_inverse=True)
+    torus = sm.Surface(v[used], numbered.reshape(-1, 3))
+    uv = np.column_stack([x, y])[f] / 4.0
+    with pytest.raises(sm.NoCertifiedMap) as raised:
+        torus.extract_quads(uv)
+    assert (raised.value.code, raised.value.stage) == ("not-a-manifold", "extraction")
+    assert len(torus.extract_quads(uv, best_effort=True).quads) == 1
+    # Eight cones in the room of three cells, rounded without constraints.
+    with pytest.raises(sm.NoCertifiedMap) as raised:
+        sm.Surface(*sphere()).integer_map(3, rounding="greedy")
+    assert (raised.value.code, raised.value.stage) == ("no-integer-map", "quantization")
+
+
 def test_misspelled_keywords_are_type_errors() -> None:
     s = sm.Surface(*grid())
     for call in (

@@ -129,8 +129,8 @@ def test_fields_are_crosses(spot_map: sm.SeamlessMap) -> None:
 
 
 def test_all_that_is_made_pickles(spot: sm.Surface, spot_map: sm.SeamlessMap, tmp_path: Path) -> None:
-    q = spot.quad_mesh(300)
-    for made in (spot, spot_map, q, spot_map.field(), spot.features(), spot.measure(spot_map.uv, spot_map.face_uv)):
+    q, g = spot.quad_mesh(300), spot.integer_map(300)
+    for made in (spot, spot_map, g, q, spot_map.field(), spot.features(), spot.measure(spot_map.uv, spot_map.face_uv)):
         again = pickle.loads(pickle.dumps(made))
         assert type(again) is type(made) and repr(again) == repr(made)
         for name, value in vars(made).items():
@@ -146,6 +146,15 @@ def test_all_that_is_made_pickles(spot: sm.Surface, spot_map: sm.SeamlessMap, tm
     again = pickle.loads(pickle.dumps(spot))
     assert again.parametrize().uv.tobytes() == spot_map.uv.tobytes()
     assert (pickle.loads(pickle.dumps(spot_map)).field().directions == spot_map.field().directions).all()
+
+
+def test_surfaces_without_area_have_results_too() -> None:
+    v, f = sphere()
+    made = sm.Surface(0.0 * v, f).parametrize()
+    assert "tau nan" in repr(made)
+    with pytest.raises(sm.InputError) as raised:
+        made.pictures()
+    assert raised.value.code == "no-picture"
 
 
 def test_notebooks_show_figures_and_pictures(spot: sm.Surface, spot_map: sm.SeamlessMap) -> None:

@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Optional
 
@@ -18,6 +19,20 @@ import seamstress_mesh as sm
 
 #: A mesh that takes some seconds.
 LARGE = sm.Surface(*sphere(100, 150))
+
+
+@pytest.fixture
+def ends() -> Iterator[None]:
+    """The threads of work that was stopped have to end soon, too."""
+    if sys.platform != "linux":
+        yield
+        return
+    threads = set(os.listdir("/proc/self/task"))
+    yield
+    deadline = time.monotonic() + 5.0
+    while left := set(os.listdir("/proc/self/task")) - threads:
+        assert time.monotonic() < deadline, left
+        time.sleep(0.01)
 
 
 def test_the_lock_is_free_meanwhile(spot: sm.Surface) -> None:
@@ -89,7 +104,7 @@ def test_a_bar_is_shown(spot: sm.Surface, capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.parametrize("call", ["parametrize", "integer_map", "quad_mesh"])
-def test_false_stops(call: str) -> None:
+def test_false_stops(call: str, ends: None) -> None:
     start = time.monotonic()
     size = {} if call == "parametrize" else {"quads": 1000}
     with pytest.raises(sm.Stopped) as raised:
@@ -98,7 +113,7 @@ def test_false_stops(call: str) -> None:
     assert time.monotonic() - start < 1.0
 
 
-def test_what_the_function_raises_comes_out() -> None:
+def test_what_the_function_raises_comes_out(ends: None) -> None:
     def tell(stage: str, fraction: float) -> bool:
         raise KeyError(stage)
 
@@ -107,7 +122,7 @@ def test_what_the_function_raises_comes_out() -> None:
 
 
 @pytest.mark.parametrize("seconds", [0.05, 0.5, 1.5])
-def test_the_time_limit(seconds: float) -> None:
+def test_the_time_limit(seconds: float, ends: None) -> None:
     start = time.monotonic()
     with pytest.raises(sm.Stopped) as raised:
         LARGE.quad_mesh(3000, timeout=seconds)
@@ -117,7 +132,7 @@ def test_the_time_limit(seconds: float) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no kill")
 @pytest.mark.parametrize("seconds", [0.1, 1.0])
-def test_ctrl_c_stops(seconds: float) -> None:
+def test_ctrl_c_stops(seconds: float, ends: None) -> None:
     timer = threading.Timer(seconds, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     start = time.monotonic()

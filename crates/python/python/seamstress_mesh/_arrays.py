@@ -36,16 +36,15 @@ def ids(values: npt.ArrayLike, name: str) -> npt.NDArray[np.uint32]:
     array = np.asarray(values)
     if array.dtype.kind not in "biuf":
         raise InputError(f"{name} are not whole numbers: their dtype is {array.dtype}", "not-a-surface")
-    if array.size == 0:
-        return array.astype(np.uint32)
-    good = (array >= 0) & (array < 2**32 - 1)
-    if array.dtype.kind == "f":
-        good &= array == np.floor(array)
+    # In a dtype of its own, since NumPy 2.0 may crash when it compares narrow ones with large numbers; what is too large
+    # for it becomes negative.
+    numbers = np.ascontiguousarray(array, dtype=np.float64 if array.dtype.kind == "f" else np.int64)
+    good = (numbers >= 0) & (numbers < 2**32 - 1) & (numbers == np.floor(numbers))
     if not good.all():
         face = int(np.argwhere(~good)[0, 0])
         text = f"{name}: {array[~good][0]} in row {face} is no whole number from 0"
         raise InputError(text, "not-a-surface", elements={"vertices": [], "edges": [], "faces": [face]})
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    return numbers.astype(np.uint32)
 
 
 def polygons(faces: Any) -> tuple[bytes, bytes]:

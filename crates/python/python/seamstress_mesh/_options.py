@@ -127,7 +127,7 @@ def surface_options(given: Mapping[str, Any]) -> str:
     return to_json(options)
 
 
-def to_json(options: dict[str, Any] | list[str]) -> str:
+def to_json(options: dict[str, Any] | list[Any]) -> str:
     """Options as JSON; numbers and paths of any kind are allowed."""
 
     def plain(value: Any) -> Any:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from . import _native
 from ._arrays import Floats, Ints, float_rows, int_rows
@@ -18,9 +17,45 @@ if TYPE_CHECKING:
 
     from ._surface import Surface
 
+Native = TypeVar("Native", _native.Map, _native.Quads)
+
+
+class _Made(Generic[Native]):
+    """A result with its compiled half, which draws and writes it; after pickling with its OBJ file instead."""
+
+    #: What the library calls its files.
+    _kind: ClassVar[str]
+    _made: Native | bytes
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes it in the format that the ending of the name says, the bytes of the command line; the file appears when
+        it is complete. Maps are written as OBJ alone, and so are quads after pickling.
+        """
+        name = os.fspath(path)
+        _native.write_file(name, self._kind, self._file(name))
+
+    def _file(self, name: str) -> bytes:
+        if not isinstance(self._made, bytes):
+            return self._made.file(name)
+        if not name.lower().removesuffix(".gz").endswith(".obj"):
+            raise InputError("what was pickled is written as OBJ alone", "unwritable")
+        return self._made
+
+    def _drawn(self) -> Native:
+        """What draws it."""
+        if isinstance(self._made, bytes):
+            raise InputError("what was pickled has no pictures; draw them before", "no-picture")
+        return self._made
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": self._file("made.obj")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SeamlessMap:
+class SeamlessMap(_Made[_native.Map]):
     """A certified seamless map: no triangle is flipped, every seam fits, every cone angle is a multiple of 90 degrees."""
 
     #: The surface it is of.
@@ -37,7 +72,8 @@ class SeamlessMap:
     aligned_edges: Ints
     #: How it was made, and how good it is, as the command line reports it.
     report: dict[str, Any]
-    _made: _native.Map | bytes = field()
+    _made: _native.Map | bytes
+    _kind = "map"
 
     @classmethod
     def _of(cls, surface: Surface, made: _native.Map) -> Self:
@@ -63,10 +99,6 @@ class SeamlessMap:
         certificate: dict[str, Any] = self.report["certificate"]
         return certificate
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes it as OBJ, the bytes of the command line; the file appears when it is complete."""
-        _native.write_file(os.fspath(path), "map", self._obj())
-
     def field(self) -> CrossField:
         """The cross field that its axes are on the surface."""
         if isinstance(self._made, bytes):
@@ -75,25 +107,14 @@ class SeamlessMap:
 
     def pictures(self, **options: Any) -> dict[str, bytes]:
         """Pictures as PNG files: ``front``, ``back`` and ``layout``. Options are those of the command line's pictures."""
-        if isinstance(self._made, bytes):
-            raise InputError("a map that was pickled has no pictures; draw them before", "no-picture")
         view = {name: options.pop(name) for name in ("view", "up") if name in options}
         settings = {name.replace("texture_", ""): value for name, value in options.items()}
-        drawn = self._made.pictures(json.dumps({**settings, "view": view}))
+        drawn = self._drawn().pictures(json.dumps({**settings, "view": view}))
         return dict(zip(("front", "back", "layout"), drawn))
 
-    def _obj(self) -> bytes:
-        return self._made if isinstance(self._made, bytes) else self._made.obj()
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_made": self._obj()}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-
     def __repr__(self) -> str:
-        tau = self.report["distortion"]["tau"]
-        return f"<{type(self).__name__}: {len(self.face_uv)} triangles, {len(self.cones)} cones, tau {tau:.4g}>"
+        tau = figure(self.report["distortion"]["tau"])
+        return f"<{type(self).__name__}: {len(self.face_uv)} triangles, {len(self.cones)} cones, tau {tau}>"
 
     def _repr_html_(self) -> str:
         pictures = [] if isinstance(self._made, bytes) else list(self.pictures().values())
@@ -121,7 +142,7 @@ class IntegerGridMap(SeamlessMap):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class QuadMesh:
+class QuadMesh(_Made[_native.Quads]):
     """A mesh of quads, an oriented manifold, and where each vertex comes from."""
 
     #: The surface it was made of.
@@ -138,7 +159,8 @@ class QuadMesh:
     source_bary: Floats
     #: How it was made, and what it is, as the command line reports it.
     report: dict[str, Any]
-    _made: _native.Quads | bytes = field()
+    _made: _native.Quads | bytes
+    _kind = "quads"
 
     @classmethod
     def _of(cls, surface: Surface, made: _native.Quads) -> QuadMesh:
@@ -153,28 +175,9 @@ class QuadMesh:
             made,
         )
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes it as OBJ, OFF, PLY or STL, by the ending of the name; the file appears when it is complete."""
-        _native.write_file(os.fspath(path), "quads", self._file(os.fspath(path)))
-
     def picture(self, **options: Any) -> bytes:
         """A picture with its irregular vertices, as a PNG file. Options are those of the command line's pictures."""
-        if isinstance(self._made, bytes):
-            raise InputError("quads that were pickled have no picture; draw it before", "no-picture")
-        return self._made.picture(json.dumps(options))
-
-    def _file(self, name: str) -> bytes:
-        if not isinstance(self._made, bytes):
-            return self._made.file(name)
-        if not name.lower().removesuffix(".gz").endswith(".obj"):
-            raise InputError("quads that were pickled are written as OBJ alone", "unwritable")
-        return self._made
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_made": self._file("quads.obj")}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
+        return self._drawn().picture(json.dumps(options))
 
     def __repr__(self) -> str:
         return f"<QuadMesh: {len(self.quads)} quads, {len(self.irregular)} irregular vertices>"

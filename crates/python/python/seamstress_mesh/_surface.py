@@ -134,10 +134,9 @@ class Surface:
         sources = feature_sources(features, align_boundary)
         size = grid_size(quads, edge_length, scale)
         settings = chosen(size=size, rounding=rounding, map={"features": sources})
-        certify = to_json(chosen(tolerance=tolerance))
+        both = to_json([chosen(tolerance=tolerance), settings])
         with running(known(run_options, RunOptions)) as run:
-            given = self._given(uv, face_uv)
-            made = self._native.integer_map_of(given, certify, to_json(settings), run)
+            made = self._native.integer_map_of(self._given(uv, face_uv), both, run)
         return IntegerGridMap._of(self, made)
 
     @documented("quad", "quads", "edge_length", "scale", "raw", "smooth", "partial", "small_parts", *_MAP)
@@ -182,9 +181,9 @@ class Surface:
         """Extracts the quads of an integer-grid map of this surface, made by any program, in grid units."""
         shape = {"raw": raw, "smooth": smooth}
         settings = chosen(shape=shape, tolerance=tolerance, best_effort=best_effort)
-        sources = to_json(feature_sources(features) or [])
+        both = to_json([feature_sources(features) or [], settings])
         with running(known(run_options, RunOptions)) as run:
-            made = self._native.extract_quads(self._given(uv, face_uv), sources, to_json(settings), run)
+            made = self._native.extract_quads(self._given(uv, face_uv), both, run)
         return QuadMesh._of(self, made)
 
     @documented("lab optimize", "objective", "bound", "solver", "features_strict", "tolerance", "features")

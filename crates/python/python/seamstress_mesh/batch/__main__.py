@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import argparse
 import os
+import sqlite3
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from . import compare, driver, export, pages
-from .engines import engine
+from .engines import EngineError, engine
 from .inputs import InputsError, find
-from .manifest import NAME, Manifest
+from .manifest import FINAL, NAME, Manifest
 from .task import OUTPUTS, Limits, Task
 
 EPILOG = """\
@@ -20,6 +23,19 @@ Options of the command stand after `--`:
   python -m seamstress_mesh.batch meshes -o out --task quad --again crashed -- --quads 2000
   python -m seamstress_mesh.batch meshes -o new --task map --compare old
 """
+
+
+def positive(kind: Callable[[str], float]) -> Callable[[str], Any]:
+    """Numbers larger than 0."""
+
+    def read(text: str) -> float:
+        number = kind(text)
+        if not 0 < number < float("inf"):
+            raise ValueError
+        return number
+
+    read.__name__ = "number larger than 0"
+    return read
 
 
 def parser() -> argparse.ArgumentParser:
@@ -39,14 +55,15 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-o", "--output", required=True, type=Path, metavar="DIR", help="the folder of results")
     made.add_argument("--task", choices=sorted(OUTPUTS), default="map", help="the command to run [default: map]")
     made.add_argument("--engine", choices=["local", "ray"], default="local", help="who runs it [default: local]")
-    made.add_argument("--workers", type=int, metavar="N", help="meshes at a time [default: all cores]")
+    made.add_argument("--workers", type=positive(int), metavar="N", help="meshes at a time [default: all cores]")
     made.add_argument("--address", help="of a Ray cluster [default: one is started here]")
-    made.add_argument("--timeout", type=float, metavar="S", help="seconds that a mesh may take")
-    made.add_argument("--cpu-limit", type=float, metavar="S", help="seconds of computation that a mesh may take")
-    made.add_argument("--memory", type=float, metavar="GB", help="memory that a mesh may take")
+    made.add_argument("--timeout", type=positive(float), metavar="S", help="seconds that a mesh may take")
+    made.add_argument("--cpu-limit", type=positive(float), metavar="S", help="seconds of computation that a mesh may take")
+    made.add_argument("--memory", type=positive(float), metavar="GB", help="memory that a mesh may take")
     made.add_argument("--retries", type=int, default=2, metavar="N", help="further tries after a crash [default: 2]")
     made.add_argument(
-        "--again", action="append", default=[], metavar="STATUS", help="do those of a status again, or `all`"
+        "--again", action="append", default=[], metavar="STATUS", choices=[*FINAL, "crashed", "all"],
+        help="do those of a status again, or `all`",
     )
     made.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     made.add_argument("--compare", type=Path, metavar="OLD", help="say what is better or worse than in this folder")
@@ -60,13 +77,17 @@ def main(arguments: list[str] | None = None) -> int:
     split = given.index("--") if "--" in given else len(given)
     options, asked = tuple(given[split + 1 :]), parser().parse_args(given[:split])
     try:
-        meshes = find(asked.inputs)
-    except InputsError as error:
+        meshes = find(asked.inputs, asked.output)
+        if not meshes:
+            raise InputsError("no mesh was found outside of the folder of results")
+        return run(asked, options, meshes)
+    except (InputsError, EngineError, OSError, sqlite3.Error) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    if not meshes:
-        print("error: no mesh was found", file=sys.stderr)
-        return 2
+
+
+def run(asked: argparse.Namespace, options: tuple[str, ...], meshes: dict[str, str]) -> int:
+    """Runs what is missing, and says what came out."""
     workers = asked.workers or os.cpu_count() or 1
     limits = Limits(asked.timeout, asked.cpu_limit, asked.memory and 1e9 * asked.memory)
     folder: Path = asked.output.resolve()

@@ -28,13 +28,16 @@ NAMED = 5
 
 
 def text(old: Path, new: Manifest, job: str) -> str:
-    """A table of figures, each with the meshes that it became worse and better for, and all changes of status."""
+    """A table of figures, each with the meshes that it became worse and better for, and all changes of status. In the same
+    folder the run before is compared with.
+    """
     path = old / NAME if old.is_dir() else old
     if not path.exists():
         return f"{old} has no {NAME} to compare with"
-    manifest = Manifest(path)
-    jobs = manifest.jobs()
-    before = {row["name"]: row for row in manifest.rows(jobs[-1]["id"])} if jobs else {}
+    manifest = Manifest(path, is_read=True)
+    is_other = not path.samefile(new.path)
+    jobs = [one["id"] for one in manifest.jobs() if is_other or one["id"] != job]
+    before = {row["name"]: row for row in manifest.rows(jobs[-1])} if jobs else {}
     manifest.close()
     after = {row["name"]: row for row in new.rows(job) if row["name"] in before}
     lines = [f"{len(after)} meshes are in both"]

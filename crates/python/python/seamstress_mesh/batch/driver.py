@@ -120,7 +120,7 @@ def work(
                 if outcome.status == "crashed" and task.attempts < retries:
                     waiting.append(replace(task, attempts=task.attempts + 1))
                     continue
-                finished = datetime.now(timezone.utc).isoformat(timespec="seconds")
+                finished = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
                 new.append((task, Found.of(task.mesh), outcome, finished))
             ended += new
             if ended and (time.monotonic() - committed > COMMIT or not flying):

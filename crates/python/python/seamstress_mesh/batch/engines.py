@@ -16,6 +16,10 @@ from .task import Interrupted, Outcome, Task, run
 AHEAD = 2
 
 
+class EngineError(Exception):
+    """An engine that cannot be had."""
+
+
 class Engine(Protocol):
     """Runs tasks."""
 
@@ -72,8 +76,10 @@ class Ray:
     def __init__(self, workers: int, address: str | None) -> None:
         # Its workers are nice to others by default, and slow.
         os.environ.setdefault("RAY_worker_niceness", "0")
-        import ray
-
+        try:
+            import ray
+        except ImportError:
+            raise EngineError("the engine `ray` needs Ray: pip install seamstress-mesh[ray]") from None
         self._ray = ray
         started: dict[str, Any] = {"address": address} if address else {"num_cpus": workers, "include_dashboard": False}
         ray.init(log_to_driver=False, logging_level=logging.ERROR, **started)

@@ -25,12 +25,15 @@ def is_mesh(path: str) -> bool:
     return name.removesuffix(".gz").endswith(MESHES)
 
 
-def find(inputs: Iterable[str]) -> dict[str, str]:
-    """The meshes by their names: the paths below the folder given, without their endings."""
+def find(inputs: Iterable[str], output: Path) -> dict[str, str]:
+    """The meshes by their names, which are the paths below the folder given. Results of other runs are none."""
     meshes: dict[str, str] = {}
+    results = os.path.realpath(output) + os.sep
     for given in inputs:
         for name, path in _of(given):
-            path = os.path.abspath(path)
+            if os.path.realpath(path).startswith(results):
+                continue
+            name, path = printable(name), os.path.abspath(path)
             if meshes.setdefault(name, path) != path:
                 # Two of one name: the path tells them apart.
                 name = f"{name}-{hashlib.sha256(path.encode()).hexdigest()[:8]}"
@@ -38,10 +41,21 @@ def find(inputs: Iterable[str]) -> dict[str, str]:
     return meshes
 
 
+def printable(name: str) -> str:
+    """A name in characters: what is no UTF-8 in the name of a file is written as its bytes."""
+    return os.fsencode(name).decode(errors="backslashreplace")
+
+
+def _is_loop(folder: str) -> bool:
+    """Whether a folder is a link to one that it is in."""
+    around = os.path.realpath(os.path.dirname(folder)) + os.sep
+    return os.path.islink(folder) and around.startswith(os.path.realpath(folder) + os.sep)
+
+
 def _of(given: str) -> Iterator[tuple[str, str]]:
     if os.path.isdir(given):
         for folder, folders, files in os.walk(given, followlinks=True):
-            folders.sort()
+            folders[:] = sorted(name for name in folders if not _is_loop(os.path.join(folder, name)))
             for file in sorted(files):
                 if is_mesh(file):
                     path = os.path.join(folder, file)
@@ -64,14 +78,16 @@ def _listed(given: str) -> Iterator[tuple[str, str]]:
     if path.suffix == ".parquet":
         rows = _parquet(path)
     elif path.suffix in (".csv", ".tsv"):
-        with path.open(newline="") as file:
+        with path.open(newline="", encoding="utf-8-sig") as file:
             rows = _column(list(csv.DictReader(file, delimiter="," if path.suffix == ".csv" else "\t")), given)
     elif path.suffix in ("", ".txt", ".list"):
-        lines = (line.strip() for line in path.read_text().splitlines())
+        lines = (line.strip() for line in path.read_text(encoding="utf-8-sig").splitlines())
         rows = [line for line in lines if line and not line.startswith("#")]
     else:
         raise InputsError(f"{given}: neither a mesh nor a list of meshes (.txt, .csv, .tsv or .parquet)")
-    for row in rows:
+    for number, row in enumerate(rows, 1):
+        if not isinstance(row, str) or not row:
+            raise InputsError(f"{given}: row {number} has no path of a mesh but {row!r}")
         name = row if not os.path.isabs(row) else os.path.basename(row)
         parts = [part for part in name.replace(os.sep, "/").split("/") if part not in ("..", ".", "")]
         yield "/".join(parts), str(path.parent / row)

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from .inputs import printable
 from .task import Limits, Outcome, Task, sha256
 
 NAME = "manifest.sqlite"
@@ -52,14 +53,20 @@ class Found:
 
 
 class Manifest:
-    """The table of one folder."""
+    """The table of one folder; perhaps one that is only read."""
 
-    def __init__(self, path: Path) -> None:
-        self._db = sqlite3.connect(path)
+    def __init__(self, path: Path, is_read: bool = False) -> None:
+        self.path = path
+        if is_read:
+            # SQLite makes a file beside it even to read it, unless told that it stays as it is.
+            how = "mode=ro" if os.access(path.parent, os.W_OK) else "immutable=1"
+            self._db = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True)
+        else:
+            self._db = sqlite3.connect(path)
+            self._db.execute("pragma journal_mode = wal")
+            self._db.execute("pragma synchronous = normal")
+            self._db.executescript(SCHEMA)
         self._db.row_factory = sqlite3.Row
-        self._db.execute("pragma journal_mode = wal")
-        self._db.execute("pragma synchronous = normal")
-        self._db.executescript(SCHEMA)
 
     def add_job(self, job: str, command: str, options: tuple[str, ...], version: str) -> None:
         """Notes what is asked for."""
@@ -79,7 +86,7 @@ class Manifest:
         if row["status"] == "ok" and output is not None and not output.exists():
             return False
         now = Found.of(task.mesh)
-        if row["mesh"] == task.mesh and (row["size"], row["mtime"]) == (now.size, now.mtime):
+        if row["mesh"] == printable(task.mesh) and (row["size"], row["mtime"]) == (now.size, now.mtime):
             return True
         return now.size == row["size"] and row["sha256"] is not None and sha256(task.mesh) == row["sha256"]
 
@@ -97,7 +104,7 @@ class Manifest:
             **asdict(outcome),
             "name": task.name,
             "job": job,
-            "mesh": task.mesh,
+            "mesh": printable(task.mesh),
             "size": found.size,
             "mtime": found.mtime,
             "output": output and str(output.relative_to(task.folder)),

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,10 @@ QUICK = {"check", "features", "quality"}
 STATUS = {0: "ok", 1: "refused", 2: "usage", 3: "no-result", 4: "time-limit"}
 #: Time that the command has to end on its own after its time limit.
 GRACE = 5.0
+#: The code of a picture that cannot be drawn, as of a mesh that is a point: the result is worth having without.
+NO_PICTURE = "no-picture"
+#: What the system says where a file does not fit into memory.
+OUT_OF_MEMORY = "out of memory"
 #: The end of what the command has said that is kept.
 LONGEST_MESSAGE = 2000
 #: Bytes that are hashed at once.
@@ -146,16 +150,20 @@ def _command(task: Task, work: Path, is_stopped: Callable[[], bool]) -> Outcome:
         arguments += [flag, str(work if flag == "--pictures" else picture)]
         picture = work / "front.png" if flag == "--pictures" else picture
     outcome, report = _process(arguments, limits, work, is_stopped)
+    error = report.pop("error", None)
+    if isinstance(error, dict):
+        outcome.code = error.get("code")
+        if outcome.code == NO_PICTURE and drawn:
+            return _command(replace(task, picture=False), work, is_stopped)
+        if outcome.status == "refused" and OUT_OF_MEMORY in (error.get("message") or ""):
+            # While the input was read: not its fault.
+            outcome.status = "memory-limit"
     if outcome.status == "ok":
         for source, place in ((picture, drawn), (made, output)):
             if place and source.exists():
                 place.parent.mkdir(parents=True, exist_ok=True)
                 os.replace(source, place)
-    error = report.pop("error", None)
-    if isinstance(error, dict):
-        outcome.code = error.get("code")
     outcome.metrics = dict(flat(report))
-    # What the system says of a child that has ended begins with what its parent had.
     outcome.memory_bytes = outcome.metrics.get("cost.peak_memory_bytes", outcome.memory_bytes)
     return outcome
 
@@ -198,8 +206,7 @@ def _wait(
             pid, status, usage = os.wait4(child.pid, os.WNOHANG)
             if pid:
                 child.returncode = os.waitstatus_to_exitcode(status)
-                unit = 1 if sys.platform == "darwin" else 1024
-                return child.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * unit
+                return child.returncode, usage.ru_utime + usage.ru_stime, _peak(usage.ru_maxrss)
         elif child.poll() is not None:
             return child.returncode, None, None
         if deadline is not None and time.monotonic() > deadline:
@@ -209,6 +216,14 @@ def _wait(
             raise Interrupted
         time.sleep(pause)
         pause = min(0.05, 1.5 * pause)
+
+
+def _peak(of_child: int) -> int | None:
+    """Peak memory of a child that has ended, bytes. It begins with what its parent had, and is not known below that."""
+    import resource
+
+    unit = 1 if sys.platform == "darwin" else 1024
+    return of_child * unit if of_child > resource.getrusage(resource.RUSAGE_SELF).ru_maxrss else None
 
 
 def kill(child: subprocess.Popen[bytes]) -> None:
