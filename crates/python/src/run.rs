@@ -2,7 +2,7 @@
 
 use crate::errors;
 use pyo3::prelude::*;
-use seamstress::{CancelToken, Context, Error, Progress};
+use seamstress::{CancelToken, Context, Error};
 use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 
 /// How often the waiting thread looks at signals and progress.
 const LOOK_UP: Duration = Duration::from_millis(20);
+/// How often the function that is told of progress is called without news, since it may ask to stop.
+const REMINDER: Duration = Duration::from_millis(200);
 /// How long work may take to notice that it should stop, before it is left to end on its own.
 const GRACE: Duration = Duration::from_millis(500);
 /// Stack of each thread, as large as main threads have.
@@ -45,6 +47,8 @@ impl Run {
         let waiting = Waiting {
             cancel: CancelToken::new(),
             latest: Arc::default(),
+            told: ("start", 0.0),
+            told_at: Instant::now(),
             deadline: limit.map(|limit| Instant::now() + limit),
             progress,
             noticed: None,
@@ -60,10 +64,16 @@ impl Run {
     }
 }
 
+/// A stage, and the share of it that is done.
+type News = (&'static str, f64);
+
 /// A thread of Python that waits for work.
 struct Waiting {
     cancel: CancelToken,
-    latest: Arc<Mutex<Option<Progress>>>,
+    latest: Arc<Mutex<Option<News>>>,
+    /// What the function was told last, and when.
+    told: News,
+    told_at: Instant,
     deadline: Option<Instant>,
     progress: Option<Py<PyAny>>,
     /// When it was noticed that the work should stop.
@@ -76,7 +86,8 @@ impl Waiting {
     fn context(&self, limit: Option<Duration>) -> Context {
         let latest = Arc::clone(&self.latest);
         let context = Context::new().cancel_token(&self.cancel).observer(move |progress| {
-            *latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(progress);
+            *latest.lock().unwrap_or_else(PoisonError::into_inner) =
+                Some((progress.stage.name(), progress.fraction));
             ControlFlow::Continue(())
         });
         match limit {
@@ -147,10 +158,14 @@ impl Waiting {
     }
 
     /// Calls the function that is told of progress; `False` asks to stop.
-    fn report(&self, py: Python<'_>) -> PyResult<bool> {
-        let latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let (Some(progress), Some(now)) = (&self.progress, latest) else { return Ok(true) };
-        let answer = progress.call1(py, (now.stage.name(), now.fraction))?;
+    fn report(&mut self, py: Python<'_>) -> PyResult<bool> {
+        let Some(progress) = &self.progress else { return Ok(true) };
+        let news = self.latest.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if news.is_none() && self.told_at.elapsed() < REMINDER {
+            return Ok(true);
+        }
+        (self.told, self.told_at) = (news.unwrap_or(self.told), Instant::now());
+        let answer = progress.call1(py, self.told)?;
         // Nothing returned is no wish.
         Ok(answer.is_none(py) || answer.is_truthy(py)?)
     }

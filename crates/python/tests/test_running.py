@@ -103,6 +103,21 @@ def test_a_bar_is_shown(spot: sm.Surface, capsys: pytest.CaptureFixture[str]) ->
     assert "%" in capsys.readouterr().err
 
 
+def test_the_function_is_asked_all_the_time() -> None:
+    # Also from the start, before there is any news.
+    asked = [time.monotonic()]
+    calls: list[tuple[str, float]] = []
+
+    def tell(stage: str, fraction: float) -> None:
+        asked.append(time.monotonic())
+        calls.append((stage, fraction))
+
+    LARGE.quad_mesh(3000, progress=tell)
+    asked.append(time.monotonic())
+    assert max(b - a for a, b in zip(asked, asked[1:])) < 1.0
+    assert all(0.0 <= fraction <= 1.0 for _, fraction in calls)
+
+
 @pytest.mark.parametrize("call", ["parametrize", "integer_map", "quad_mesh"])
 def test_false_stops(call: str, ends: None) -> None:
     start = time.monotonic()
