@@ -261,6 +261,14 @@ def test_names_of_any_kind(tmp_path: Path) -> None:
     assert all((out / unquote(link)).exists() for link in re.findall("(?:href|src)='([^']*)'", page))
 
 
+def test_names_that_the_terminal_does_not_have(tmp_path: Path) -> None:
+    write_obj(tmp_path / "\u732b.obj", *grid(3))
+    command = [sys.executable, "-m", "seamstress_mesh.batch", str(tmp_path / "\u732b.obj"), "-o", str(tmp_path / "out")]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    said = subprocess.run([*command, "--no-pictures"], check=True, env=environment, capture_output=True, text=True).stdout
+    assert "slowest \\u732b.obj" in said
+
+
 def test_results_are_kept_where_no_picture_can_be_drawn(tmp_path: Path) -> None:
     vertices, faces = sphere()
     write_obj(tmp_path / "in" / "point.obj", 0.0 * vertices, faces)

@@ -79,7 +79,7 @@ def _as(kind: str, value: Any) -> Any:
 
 def _write_csv(manifest: Manifest, job: str, path: Path, columns: list[str]) -> Path:
     temporary = path.with_name(f".{path.name}")
-    with temporary.open("w", newline="") as file:
+    with temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns)
         writer.writeheader()
         for row in manifest.rows(job):

@@ -185,10 +185,10 @@ def _process(
     except BaseException:
         kill(child)
         raise
-    message = said.read_text(errors="replace")[-LONGEST_MESSAGE:].strip() or None
+    message = said.read_text(encoding="utf-8", errors="replace")[-LONGEST_MESSAGE:].strip() or None
     status, code = _status(ended, message or "")
     try:
-        read = json.loads(report.read_text())
+        read = json.loads(report.read_text(encoding="utf-8"))
     except ValueError:
         read = {}
     outcome = Outcome(status, code, None if status == "ok" else message, cpu_seconds=cpu, memory_bytes=memory)
