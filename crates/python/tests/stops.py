@@ -74,7 +74,8 @@ def main() -> None:
                     time.sleep(0.005)
                 ended = time.monotonic() - start - seconds
                 worst = [max(worst[0], back), max(worst[1], ended)]
-                shown.append(f"{seconds:.1f} s: {back:.2f}, {ended:.2f}")
+                # It may have made its result before.
+                shown.append(f"{seconds:.1f} s: {back:.2f}, {ended:.2f}" if back >= 0.0 else "too late")
             print(f"  {way.__name__.replace('_', ' '):<12} {'; '.join(shown)}", flush=True)
     print(f"longest {worst[0]:.2f}, {worst[1]:.2f}")
 
