@@ -100,6 +100,14 @@ impl Report {
         serde_json::from_slice(json).map(Self)
     }
 
+    /// The report with one more entry.
+    pub(crate) fn with(mut self, key: &str, value: Value) -> Self {
+        if let Value::Object(entries) = &mut self.0 {
+            entries.insert(key.into(), value);
+        }
+        self
+    }
+
     /// A value by its JSON pointer, as in `/input/faces`; null if there is none.
     pub(crate) fn get(&self, pointer: &str) -> &Value {
         self.0.pointer(pointer).unwrap_or(&Value::Null)

@@ -23,7 +23,7 @@ mod vector;
 pub use connectivity::{IrregularVertex, QuadConnectivity, QuadFault, QuadFaults};
 pub use constraints::{Constraints, SlideCurve};
 pub use extract::{ExtractError, ExtractOptions, Extraction, extract};
-pub use manifold::{ManifoldError, ManifoldQuads, manifold_quads};
+pub use manifold::{GoesOn, ManifoldError, ManifoldQuads, manifold_quads};
 pub use mesh::{QuadMesh, QuadMeshError};
 pub use smooth::{SmoothError, SmoothOptions, Smoothed, smooth};
 pub use surface::locate;

@@ -6,11 +6,13 @@ use crate::{
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, TriMesh};
 use seamstress_parametrize::SeamlessMap;
-use seamstress_parametrize::progress::Observer;
+use seamstress_parametrize::progress::{Observer, Progress};
 use seamstress_quantize::{
-    Quantization, QuantizeError, QuantizeOptions, Refusal, quantize_accepting,
+    Decisions, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, Refusal,
+    quantize_deciding,
 };
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 
 /// An integer-grid map and its quads, an oriented manifold.
 #[derive(Debug)]
@@ -45,11 +47,14 @@ pub enum ManifoldError {
     },
 }
 
+/// Whether to go on where a brief search for a component has found no map.
+pub type GoesOn<'a> = dyn FnMut(&QuantizationFailure) -> bool + 'a;
+
 /// Rounds a seamless map, as [`quantize`](seamstress_quantize::quantize) does, and extracts its quads, a manifold.
 ///
 /// Where a component, or the space between cones, is only a cell or two wide, a cell of the grid may have
 /// itself as a neighbour, or another one twice. An indexed quad mesh cannot represent that. The quads of a component
-/// are therefore looked at before a grid is taken.
+/// are therefore looked at before a grid is taken. `goes_on` is asked where a brief search has found none.
 ///
 /// # Errors
 /// [`ManifoldError`].
@@ -59,26 +64,18 @@ pub fn manifold_quads(
     map: &SeamlessMap,
     aligned: &EdgeSet,
     options: &QuantizeOptions,
+    goes_on: &mut GoesOn<'_>,
     observer: &mut Observer<'_>,
 ) -> Result<ManifoldQuads, ManifoldError> {
     let settings = ExtractOptions::default();
     // Rounding and the looks at its quads take turns.
     let observer = RefCell::new(observer);
     let observe = |progress| (observer.borrow_mut())(progress);
-    let mut is_manifold = |piece: &Component, uvs: &[[f64; 2]]| {
-        let positions = piece.positions(positions);
-        // A small piece may have no whole cell; whether the mesh has any is found in the end. So is a wish to stop.
-        let made = extract(&piece.mesh, &positions, uvs, &settings, &mut { observe });
-        let Ok(extraction) = made else { return Ok(()) };
-        extraction.mesh.connectivity().map(|_| ()).map_err(|faults| {
-            let faces = faulty_faces(&extraction, &faults);
-            let faces = faces.into_iter().map(|f| piece.faces[f as usize].0).collect();
-            Refusal { reason: format!("its quads are no manifold: {faults}"), faces }
-        })
-    };
-    let accept = &mut is_manifold;
+    let mut decisions = OfManifolds { positions, settings: &settings, observe, goes_on };
     let quantization =
-        quantize_accepting(mesh, positions, map, aligned, options, accept, &mut { observe })?;
+        quantize_deciding(mesh, positions, map, aligned, options, &mut decisions, &mut {
+            observe
+        })?;
     let extraction =
         extract(mesh, positions, quantization.map.corner_uvs(), &settings, &mut { observe })?;
     let connectivity = extraction.mesh.connectivity().map_err(|faults| {
@@ -86,6 +83,32 @@ pub fn manifold_quads(
         ManifoldError::NoManifold { faults, faces }
     })?;
     Ok(ManifoldQuads { quantization, extraction, connectivity })
+}
+
+/// Decides for maps whose quads are a manifold.
+struct OfManifolds<'a, O> {
+    positions: &'a [[f64; 3]],
+    settings: &'a ExtractOptions,
+    observe: O,
+    goes_on: &'a mut GoesOn<'a>,
+}
+
+impl<O: FnMut(Progress) -> ControlFlow<()>> Decisions for OfManifolds<'_, O> {
+    fn accept(&mut self, piece: &Component, corner_uvs: &[[f64; 2]]) -> Result<(), Refusal> {
+        let positions = piece.positions(self.positions);
+        // A small piece may have no whole cell; whether the mesh has any is found in the end. So is a wish to stop.
+        let made = extract(&piece.mesh, &positions, corner_uvs, self.settings, &mut self.observe);
+        let Ok(extraction) = made else { return Ok(()) };
+        extraction.mesh.connectivity().map(|_| ()).map_err(|faults| {
+            let faces = faulty_faces(&extraction, &faults);
+            let faces = faces.into_iter().map(|f| piece.faces[f as usize].0).collect();
+            Refusal { reason: format!("its quads are no manifold: {faults}"), faces }
+        })
+    }
+
+    fn goes_on(&mut self, failure: &QuantizationFailure) -> bool {
+        (self.goes_on)(failure)
+    }
 }
 
 /// Faces of the mesh where faults of its quads are.
@@ -109,7 +132,6 @@ mod tests {
     use seamstress_parametrize::Tolerance;
     use seamstress_quantize::{GridSize, QuantizationFailure, RoundingMethod};
     use seamstress_testkit::{squares, torus};
-    use std::ops::ControlFlow;
 
     #[test]
     fn a_torus_has_five_quads_at_a_minimum() {
@@ -126,6 +148,7 @@ mod tests {
                 &seamless,
                 &EdgeSet::new(&mesh, []),
                 &options,
+                &mut |_| true,
                 &mut go_on,
             )
             .unwrap();
@@ -149,7 +172,15 @@ mod tests {
         };
         let nothing = EdgeSet::new(&mesh, []);
         let positions = &map.soup.positions;
-        let made = manifold_quads(&mesh, positions, &seamless, &nothing, &options, &mut go_on);
+        let made = manifold_quads(
+            &mesh,
+            positions,
+            &seamless,
+            &nothing,
+            &options,
+            &mut |_| true,
+            &mut go_on,
+        );
         let ManifoldError::Quantize(QuantizeError::Components(failed)) = made.unwrap_err() else {
             panic!("a map that is refused is a failure of its component")
         };

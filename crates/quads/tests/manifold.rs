@@ -20,7 +20,8 @@ fn refinements(soup: &TriangleSoup, quads: f64) -> usize {
     let map = make_map(&mesh, &soup.positions, &options, &mut go_on).unwrap().map;
     let (nothing, options) =
         (EdgeSet::new(&mesh, []), QuantizeOptions { size, ..QuantizeOptions::default() });
-    let made = manifold_quads(&mesh, &soup.positions, &map, &nothing, &options, &mut go_on);
+    let made =
+        manifold_quads(&mesh, &soup.positions, &map, &nothing, &options, &mut |_| true, &mut go_on);
     let made = made.unwrap();
     assert_eq!(made.connectivity.euler_characteristic(), mesh.euler_characteristic());
     made.quantization.refinements()

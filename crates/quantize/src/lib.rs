@@ -47,8 +47,8 @@ pub use certificate::{IntegerCertificate, IntegerGridMap, IntegralTolerance};
 pub use error::{QuantizationFailure, QuantizeError, Refusal};
 pub use gauss::Overflow;
 pub use options::{GridSize, QuantizeOptions, RoundingMethod};
-pub use quantize::{Quantization, quantize, quantize_accepting};
-pub use search::Acceptance;
+pub use quantize::{Quantization, quantize, quantize_deciding};
+pub use search::Decisions;
 pub use stats::QuantizationStats;
 
 /// What tests of this workspace look at; no promise is made of it.

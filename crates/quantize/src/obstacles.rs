@@ -38,6 +38,11 @@ impl Obstacles {
         self.cuts.extend(cuts);
     }
 
+    /// Forgets all cuts; says how many there were.
+    pub(crate) fn forget_cuts(&mut self) -> usize {
+        self.cuts.drain(..).count()
+    }
+
     /// The rounding problem of a layout for cells of size `h`, in its units.
     ///
     /// # Errors

@@ -59,8 +59,6 @@ pub struct QuantizeOptions {
     /// Passes of roundings, of usual size, that a component is worth on all grids. When they are spent, the best map so far
     /// is the result.
     pub effort: usize,
-    /// How often the cells asked for may fit into their area that a component gets where they do not fit it, at most.
-    pub finest: f64,
 }
 
 /// Passes of roundings that a component is worth: several times what the hardest meshes measured took.
@@ -74,7 +72,6 @@ impl Default for QuantizeOptions {
             tolerance: Tolerance::default(),
             given: Tolerance::default(),
             effort: EFFORT,
-            finest: f64::INFINITY,
         }
     }
 }

@@ -7,7 +7,7 @@ use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::progress::{Cancelled, Watch};
 
 /// Most moves. Paths that arrive take up to 28 on the meshes measured, nearly all of them fewer than 10.
-const MOST_MOVES: usize = 30;
+const MOST_MOVES: usize = 60;
 /// Share of the largest flip-free step that is taken: the rest keeps triangles from being nearly flat.
 const STEP_FRACTION: f64 = 0.9;
 /// A step that raises the energy too much is cut to this share.
@@ -18,7 +18,7 @@ const ENERGY_GROWTH: f64 = 1.6;
 const SHORT_MOVE: f64 = 0.5;
 /// A few Newton steps that spread the strain of a short move.
 const CENTRING: NewtonOptions = NewtonOptions { max_iterations: 2, tolerance: 1e-4 };
-/// The path is blocked after a number of moves of less than this share of the rest in a row.
+/// The path is blocked after a number of moves of less than this share of the rest in a row that raise the energy.
 const TINY_MOVE: f64 = 0.02;
 /// That number.
 const MOST_TINY_MOVES: usize = 6;
@@ -29,7 +29,7 @@ const SMALLEST_MOVE: f64 = 1e-6;
 const CLOSE: f64 = 0.1;
 /// Mean energies above this are far from any layout wanted; the worst accepted one measured has 9.
 const HIGH: f64 = 20.0;
-/// The factor by which the energy then rises from one short move to the next.
+/// The factor by which the energy rises from one short move to the next where the layout becomes flat.
 const STEEP: f64 = 1.1;
 /// Shift of the Hessian, as a share of its diagonal.
 pub(crate) const SHIFT: f64 = 1e-8;
@@ -72,15 +72,15 @@ pub(crate) fn advance(
             y[n_free..].copy_from_slice(target);
             break;
         }
+        let before = energy;
         if taken < SHORT_MOVE {
             y = minimize(problem, y, &SymmetricDirichlet, &CENTRING, watch)?.y;
-            let before = energy;
             energy = problem.value(&SymmetricDirichlet, &problem.space().expand(&y));
             if rest < CLOSE && energy > HIGH.max(STEEP * before) {
                 break;
             }
         }
-        tiny = if taken < TINY_MOVE { tiny + 1 } else { 0 };
+        tiny = if taken < TINY_MOVE && energy > STEEP * before { tiny + 1 } else { 0 };
     }
     Ok(Advance { y, reached: 1.0 - rest, moves })
 }

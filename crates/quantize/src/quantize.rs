@@ -3,7 +3,7 @@
 use crate::certificate::IntegerGridMap;
 use crate::error::{QuantizationFailure, QuantizeError};
 use crate::options::{GridSize, QuantizeOptions};
-use crate::search::{Acceptance, ComponentSearch, Placement};
+use crate::search::{ComponentSearch, Decisions, Placement};
 use crate::stats::QuantizationStats;
 use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::features::EdgeSet;
@@ -18,6 +18,8 @@ const CLOSE_ENOUGH: f64 = 0.02;
 const MOST_SIZES: usize = 4;
 /// A number further off is worth up to as many sizes again, while they get better.
 const FAR_OFF: f64 = 0.05;
+/// Where a number is further off, a caller may want another map.
+const TOO_FAR_OFF: f64 = 0.1;
 /// Cells of a size that is no better are followed by ones on the other side of the best, nearer by this power.
 const NEARER: f64 = 0.7;
 /// Most that a cell is lengthened or shortened by at once: where cones are dense, the count hardly follows the size.
@@ -74,20 +76,20 @@ pub fn quantize(
     options: &QuantizeOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Quantization, QuantizeError> {
-    quantize_accepting(mesh, positions, map, aligned, options, &mut |_, _| Ok(()), observer)
+    quantize_deciding(mesh, positions, map, aligned, options, &mut (), observer)
 }
 
-/// As [`quantize`], of maps that a caller accepts component by component.
+/// As [`quantize`], with a caller who accepts maps component by component, and may give up early.
 ///
 /// # Errors
 /// As [`quantize`]; [`QuantizationFailure::Refused`] if no map of a component was accepted.
-pub fn quantize_accepting(
+pub fn quantize_deciding(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
     map: &SeamlessMap,
     aligned: &EdgeSet,
     options: &QuantizeOptions,
-    accept: &mut Acceptance<'_>,
+    decisions: &mut dyn Decisions,
     observer: &mut Observer<'_>,
 ) -> Result<Quantization, QuantizeError> {
     let (corners, vertices, faces) = (map.corner_uvs().len(), mesh.n_vertices(), mesh.n_faces());
@@ -103,7 +105,7 @@ pub fn quantize_accepting(
     Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::of_seams(&options.given))
         .map_err(QuantizeError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
-    let mut all = Components { pieces: &pieces, searches: Vec::new(), accept, observer };
+    let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };
     all.read(positions, map, aligned, options)?;
     let Sized { cell, placements, tried, .. } = all.meet(options.size)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
@@ -136,7 +138,7 @@ struct Sized {
 struct Components<'p, 'a, 'b> {
     pieces: &'p [Component],
     searches: Vec<ComponentSearch<'p>>,
-    accept: &'a mut Acceptance<'a>,
+    decisions: &'a mut dyn Decisions,
     observer: &'a mut Observer<'b>,
 }
 
@@ -153,8 +155,7 @@ impl<'p> Components<'p, '_, '_> {
                 Ok(made) => all.push(made),
                 Err(QuantizationFailure::Cancelled(cancelled)) => return Err(cancelled.into()),
                 Err(cause) => {
-                    let (face, cause) =
-                        (self.pieces[k].faces[0].0, cause.in_whole(&self.pieces[k]));
+                    let face = self.pieces[k].faces[0].0;
                     failed.push(FailedComponent { component: k, face, cause });
                 }
             }
@@ -215,7 +216,25 @@ impl<'p> Components<'p, '_, '_> {
                 };
             }
         }
-        best.ok_or(QuantizeError::BadSize)
+        let best = best.ok_or(QuantizeError::BadSize)?;
+        if best.off > TOO_FAR_OFF {
+            self.reconsider(best.cell)?;
+        }
+        Ok(best)
+    }
+
+    /// Asks the caller whether to go on where lines much shorter than a cell are why a number of quads is missed.
+    fn reconsider(&mut self, cell: f64) -> Result<(), QuantizeError> {
+        let mut failed = Vec::new();
+        for (k, search) in self.searches.iter_mut().enumerate() {
+            if let Some(cause) = search.short_lines(cell)
+                && !self.decisions.goes_on(&cause)
+            {
+                let face = self.pieces[k].faces[0].0;
+                failed.push(FailedComponent { component: k, face, cause });
+            }
+        }
+        if failed.is_empty() { Ok(()) } else { Err(QuantizeError::Components(failed)) }
     }
 
     /// All components on cells of one size, side by side.
@@ -223,7 +242,7 @@ impl<'p> Components<'p, '_, '_> {
         let mut column = 0;
         self.each(|all, k| {
             let mut watch = Watch::new(all.observer, k, all.pieces.len());
-            let placement = all.searches[k].place(cell, column, all.accept, &mut watch)?;
+            let placement = all.searches[k].place(cell, column, all.decisions, &mut watch)?;
             // One empty column between components.
             column += placement.columns + 1;
             Ok(placement)

@@ -8,7 +8,7 @@ use crate::obstacles::Obstacles;
 use crate::options::{GridSize, QuantizeOptions, RoundingMethod};
 use crate::path::{Advance, advance};
 use crate::rounding::{
-    HOPELESS, ReducedEnergy, Rounding, RoundingProblem, improve, round, round_greedily,
+    Constraint, HOPELESS, ReducedEnergy, Rounding, RoundingProblem, improve, round, round_greedily,
 };
 use crate::stats::QuantizationStats;
 use seamstress_mesh::features::EdgeSet;
@@ -17,11 +17,31 @@ use seamstress_parametrize::energy::SymmetricDirichlet;
 use seamstress_parametrize::layout::newton::{NewtonOptions, minimize};
 use seamstress_parametrize::map::SeamlessMap;
 use seamstress_parametrize::progress::{Cancelled, Watch};
+use std::collections::BTreeSet;
 use web_time::Instant;
 
-/// What a caller asks of a component's map beyond its certificate, given one UV per corner. On a refusal the search
-/// goes on with another grid.
-pub type Acceptance<'a> = dyn FnMut(&Component, &[[f64; 2]]) -> Result<(), Refusal> + 'a;
+/// What a caller decides on during the search.
+pub trait Decisions {
+    /// Whether a component's map will do beyond its certificate, given one UV per corner; if not, the search goes on with
+    /// another grid.
+    ///
+    /// # Errors
+    /// [`Refusal`] if it will not.
+    fn accept(&mut self, piece: &Component, corner_uvs: &[[f64; 2]]) -> Result<(), Refusal> {
+        let _ = (piece, corner_uvs);
+        Ok(())
+    }
+
+    /// Whether to go on, with finer grids and for longer, where a brief search for a component has found no map; why not
+    /// is told in elements of the whole mesh.
+    fn goes_on(&mut self, failure: &QuantizationFailure) -> bool {
+        let _ = failure;
+        true
+    }
+}
+
+/// Accepts every map, and always goes on.
+impl Decisions for () {}
 
 /// Cells tried before finer ones, as shares of the area asked for: all make the number of quads asked for
 /// within a few percent, but other integers are near.
@@ -32,6 +52,12 @@ const FEW_NEARBY: usize = 3;
 const REFINEMENT: f64 = 1.1;
 /// Finer grids tried, as powers of that: small steps first, since the number of quads asked for is missed by them.
 const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
+/// The finest of them that a brief search tries.
+const FINEST_BRIEFLY: f64 = 0.8;
+/// Passes of roundings that a brief search is worth.
+const BRIEF_EFFORT: f64 = 20.0;
+/// Lines shorter than this had to get much longer, grid units.
+const SHORT_LINE: f64 = 0.5;
 /// Roundings on one grid, each but the first with the cuts that the one before has taught.
 const MOST_ROUNDINGS: usize = 14;
 /// Constraints times coordinates of a usual pass of a rounding; a larger one counts as so many of these, since that is what
@@ -143,12 +169,12 @@ impl<'a> ComponentSearch<'a> {
     /// Errors only as long as no map has been found: later, the coarsest so far takes the place of one.
     ///
     /// # Errors
-    /// [`QuantizationFailure`], of the first grid.
+    /// [`QuantizationFailure`], of the first grid, in elements of the whole mesh.
     pub(crate) fn place(
         &mut self,
         cell: f64,
         column: i64,
-        accept: &mut Acceptance<'_>,
+        decisions: &mut dyn Decisions,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Placement, QuantizationFailure> {
         let is_greedy = self.options.rounding == RoundingMethod::Greedy;
@@ -158,28 +184,32 @@ impl<'a> ComponentSearch<'a> {
             false => FEWEST_CELLS,
         };
         let asked = cell.min(self.layout.side() / fewest.sqrt()) / self.layout.unit;
-        let finest = 1.0 / self.options.finest;
-        let finer =
-            REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k)).filter(|&share| share >= finest);
+        let finer = REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k));
         let n_shares = match &self.coarsest {
             _ if is_greedy => 1,
             Some(_) => FEW_NEARBY,
             None => usize::MAX,
         };
         let (mut first, mut is_hopeless) = (None, false);
+        let mut is_asking = self.coarsest.is_none();
         for (k, share) in NEARBY.into_iter().chain(finer).take(n_shares).enumerate() {
-            if is_hopeless && (k < NEARBY.len() || self.options.finest.is_finite()) {
+            if let Some(first) = &first {
+                let is_brief = share >= FINEST_BRIEFLY && self.work < BRIEF_EFFORT && !is_hopeless;
+                let is_over = is_asking && !is_brief && !decisions.goes_on(first);
+                if is_over || self.work >= self.options.effort as f64 {
+                    break;
+                }
+                is_asking &= is_brief;
+            }
+            if is_hopeless && k < NEARBY.len() {
                 continue;
             }
-            if first.is_some() && self.work >= self.options.effort as f64 {
-                break;
-            }
-            match self.try_grid(share.sqrt() * asked, column, accept, watch) {
+            match self.try_grid(share.sqrt() * asked, column, decisions, watch) {
                 Ok(placement) => return Ok(self.placed(placement, asked, first)),
-                Err(failure) if !failure.is_of_grid() => return Err(failure),
+                Err(failure) if !failure.is_of_grid() => return Err(failure.in_whole(self.piece)),
                 Err(failure) => {
                     is_hopeless = matches!(failure, QuantizationFailure::TooCoarse { count, .. } if count > HOPELESS);
-                    first = first.or(Some(failure));
+                    first = first.or(Some(failure.in_whole(self.piece)));
                 }
             }
         }
@@ -189,6 +219,17 @@ impl<'a> ComponentSearch<'a> {
         }
     }
 
+    /// The lines that had to get much longer for cells of a size in mesh units, if there are some.
+    pub(crate) fn short_lines(&mut self, cell: f64) -> Option<QuantizationFailure> {
+        let h = cell / self.layout.unit;
+        let problem = self.obstacles.problem(&self.layout, &self.energy, h).ok()?;
+        let is_short = |c: &&Constraint| c.minimum > 0 && c.length < SHORT_LINE;
+        let pairs = ends_of(problem.constraints.iter().filter(is_short));
+        let count = pairs.len();
+        let failure = QuantizationFailure::TooCoarse { count, pairs }.in_whole(self.piece);
+        (count > 0).then_some(failure)
+    }
+
     /// A placement, with what was asked for in its stead.
     fn placed(
         &self,
@@ -196,7 +237,7 @@ impl<'a> ComponentSearch<'a> {
         asked: f64,
         failure: Option<QuantizationFailure>,
     ) -> Placement {
-        let refined_because = failure.map(|failure| failure.in_whole(self.piece).to_string());
+        let refined_because = failure.map(|failure| failure.to_string());
         Placement { asked: asked * self.layout.unit, refined_because, ..placement }
     }
 
@@ -216,7 +257,7 @@ impl<'a> ComponentSearch<'a> {
         &mut self,
         h: f64,
         column: i64,
-        accept: &mut Acceptance<'_>,
+        decisions: &mut dyn Decisions,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Placement, QuantizationFailure> {
         self.stats.grids += 1;
@@ -225,7 +266,9 @@ impl<'a> ComponentSearch<'a> {
             RoundingMethod::Greedy => self.follow(h)?,
         };
         let placement = self.written(&candidate, column)?;
-        accept(self.piece, &placement.corner_uvs).map_err(QuantizationFailure::Refused)?;
+        decisions
+            .accept(self.piece, &placement.corner_uvs)
+            .map_err(QuantizationFailure::Refused)?;
         if self.coarsest.as_ref().is_none_or(|coarsest| coarsest.h < h) {
             self.coarsest = Some(candidate);
         }
@@ -249,7 +292,7 @@ impl<'a> ComponentSearch<'a> {
         h: f64,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Candidate, QuantizationFailure> {
-        let mut start = None;
+        let (mut start, mut tried) = (None, BTreeSet::new());
         let mut failure = QuantizationFailure::Refused(Refusal::default());
         for _ in 0..MOST_ROUNDINGS {
             let clock = Instant::now();
@@ -264,8 +307,17 @@ impl<'a> ComponentSearch<'a> {
             self.stats.repairs += usize::from(rounding.is_repaired);
             self.stats.constraints = problem.constraints.len();
             self.stats.seconds_rounding += clock.elapsed().as_secs_f64();
-            if rounding.violated.count > 0 {
-                return Err(too_coarse(&problem, &rounding));
+            // What a cut asks for beyond what has failed is a guess: integers that miss a cut alone are worth a try.
+            if rounding.violated.count > rounding.violated.cuts {
+                // Cuts of other grids may contradict each other here.
+                let failure = too_coarse(&problem, &rounding);
+                if self.obstacles.forget_cuts() == 0 {
+                    return Err(failure);
+                }
+                continue;
+            }
+            if !tried.insert(rounding.x.clone()) {
+                break;
             }
 
             let clock = Instant::now();
@@ -342,9 +394,12 @@ fn round_near(
 
 /// Names the lines that a rounding has not kept.
 fn too_coarse(problem: &RoundingProblem<'_>, rounding: &Rounding) -> QuantizationFailure {
-    let ends = |&i: &usize| problem.constraints[i].ends.map(|ends| ends.map(|v| v.0));
-    let mut pairs: Vec<[u32; 2]> = rounding.violated.involved.iter().filter_map(ends).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
-    QuantizationFailure::TooCoarse { count: rounding.violated.count, pairs }
+    let involved = rounding.violated.involved.iter().map(|&i| &problem.constraints[i]);
+    QuantizationFailure::TooCoarse { count: rounding.violated.count, pairs: ends_of(involved) }
+}
+
+/// The pairs of vertices that displacements keep apart, each once.
+fn ends_of<'c>(constraints: impl Iterator<Item = &'c Constraint>) -> Vec<[u32; 2]> {
+    let ends = constraints.filter_map(|c| c.ends.map(|ends| ends.map(|v| v.0)));
+    ends.collect::<BTreeSet<_>>().into_iter().collect()
 }

@@ -6,8 +6,8 @@ use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Component, TriMesh};
 use seamstress_parametrize::{MapOptions, make_map};
 use seamstress_quantize::{
-    GridSize, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions, Refusal,
-    quantize_accepting,
+    Decisions, GridSize, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions,
+    Refusal, quantize_deciding,
 };
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
@@ -16,18 +16,26 @@ fn run(
     soup: &TriangleSoup,
     size: GridSize,
     effort: usize,
-    mut accept: impl FnMut() -> bool,
+    accept: impl FnMut() -> bool,
 ) -> Result<Quantization, QuantizeError> {
     let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
     let mut go_on = |_| ControlFlow::Continue(());
     let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
     let options = QuantizeOptions { size, effort, ..Default::default() };
-    let mut accept = |_: &Component, _: &[[f64; 2]]| match accept() {
-        true => Ok(()),
-        false => Err(Refusal { reason: "for the test".into(), faces: vec![] }),
-    };
+    let mut decisions = Accepting(accept);
     let nothing = EdgeSet::new(&mesh, []);
-    quantize_accepting(&mesh, &soup.positions, &map, &nothing, &options, &mut accept, &mut go_on)
+    quantize_deciding(&mesh, &soup.positions, &map, &nothing, &options, &mut decisions, &mut go_on)
+}
+
+struct Accepting<F>(F);
+
+impl<F: FnMut() -> bool> Decisions for Accepting<F> {
+    fn accept(&mut self, _: &Component, _: &[[f64; 2]]) -> Result<(), Refusal> {
+        match (self.0)() {
+            true => Ok(()),
+            false => Err(Refusal { reason: "for the test".into(), faces: vec![] }),
+        }
+    }
 }
 
 fn found(soup: &TriangleSoup, quads: f64) -> Quantization {

@@ -8,16 +8,12 @@ use crate::options::IntegerMapOptions;
 use crate::surface::Surface;
 use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph};
 use seamstress_parametrize::{ReleaseReason, ReleasedFeature};
-use seamstress_quads::ManifoldError;
+use seamstress_quads::{GoesOn, ManifoldError};
 use seamstress_quantize::{QuantizationFailure, QuantizeError, QuantizeOptions};
 use std::collections::BTreeSet;
 
 /// Maps made at most, each with fewer features.
 const MOST_MAPS: usize = 6;
-/// How much finer the grid may get before features are given up, by the number of cells.
-const FINEST: f64 = 1.25;
-/// Passes of roundings that a component is worth before that.
-const EFFORT: usize = 20;
 /// Curves shorter than so many cells are given up before others.
 const SHORT: f64 = 1.0;
 
@@ -32,10 +28,14 @@ impl Surface {
         asked: &FeatureCurves,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
-        round: impl Fn(&SeamlessStart, &QuantizeOptions, &mut Watcher) -> Result<T, ManifoldError>,
+        round: impl Fn(
+            &SeamlessStart,
+            &QuantizeOptions,
+            &mut GoesOn<'_>,
+            &mut Watcher,
+        ) -> Result<T, ManifoldError>,
     ) -> Result<(SeamlessStart, T), Error> {
         let (mesh, settings) = (self.mesh(), options.to_quantize());
-        let brief = QuantizeOptions { finest: FINEST, effort: EFFORT, ..settings };
         let cell = settings.size.cell(self.metric().side());
         let mut curves = asked.clone();
         let mut given_up = Vec::new();
@@ -44,16 +44,23 @@ impl Surface {
             let start = self.make_seamless(curves.clone(), options, watcher)?;
             let kept = start.kept(mesh);
             let may_give_up = n_maps < MOST_MAPS && !options.map.features_strict;
-            let mut crowded = EdgeSet::new(mesh, []);
-            if may_give_up && !kept.is_empty() {
-                match round(&start, &brief, watcher) {
-                    Ok(made) => break (start, made),
-                    Err(cause) => crowded = self.crowded(&cause, &kept, cell),
-                }
-            }
+            let crowded = |failure: &QuantizationFailure| match may_give_up {
+                true => self.crowded(failure, &kept, cell),
+                false => EdgeSet::new(mesh, []),
+            };
+            let mut goes_on = |failure: &_| crowded(failure).is_empty();
+            let cause = match round(&start, &settings, &mut goes_on, watcher) {
+                Ok(made) => break (start, made),
+                Err(cause) => cause,
+            };
+            let failed = match &cause {
+                ManifoldError::Quantize(QuantizeError::Components(failed)) => &failed[..],
+                _ => &[],
+            };
+            let crowded = failed.iter().flat_map(|part| crowded(&part.cause).edges().to_vec());
+            let crowded = EdgeSet::new(mesh, crowded);
             if crowded.is_empty() {
-                let made = round(&start, &settings, watcher);
-                break (start, made.map_err(|cause| self.no_manifold(cause, options))?);
+                return Err(self.no_manifold(cause, options));
             }
             let pairs = crowded.vertex_pairs(mesh).into_iter().map(ordered);
             given_up.extend(pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded)));
@@ -64,17 +71,12 @@ impl Surface {
         Ok((SeamlessStart { features, ..start }, made))
     }
 
-    /// The edges to give up where a rounding has failed: of the curves at lines of the grid that would meet, the short ones,
-    /// or else the shortest at each place.
-    fn crowded(&self, cause: &ManifoldError, kept: &EdgeSet, cell: f64) -> EdgeSet {
-        let failed = match cause {
-            ManifoldError::Quantize(QuantizeError::Components(failed)) => &failed[..],
-            _ => &[],
+    /// The edges to give up where a component has failed: of the curves at lines of the grid that would meet, the short
+    /// ones, or else the shortest at each place.
+    fn crowded(&self, failure: &QuantizationFailure, kept: &EdgeSet, cell: f64) -> EdgeSet {
+        let QuantizationFailure::TooCoarse { pairs, .. } = failure else {
+            return EdgeSet::new(self.mesh(), []);
         };
-        let pairs = failed.iter().flat_map(|part| match &part.cause {
-            QuantizationFailure::TooCoarse { pairs, .. } => &pairs[..],
-            _ => &[],
-        });
         let graph = FeatureGraph::new(self.mesh(), self.metric(), kept);
         let inside: Vec<&Curve> =
             graph.curves.iter().filter(|curve| curve.boundary_edges == 0).collect();
@@ -82,7 +84,7 @@ impl Surface {
             let touches = |curve: &&&Curve| curve.vertices.iter().any(|v| pair.contains(&v.0));
             inside.iter().copied().filter(|curve| touches(&curve)).collect::<Vec<_>>()
         };
-        let ends: BTreeSet<[u32; 2]> = pairs.copied().collect();
+        let ends: BTreeSet<[u32; 2]> = pairs.iter().copied().collect();
         let crowds: Vec<Vec<&Curve>> = ends.iter().map(at).collect();
         let short: Vec<&Curve> =
             crowds.iter().flatten().copied().filter(|curve| curve.length < SHORT * cell).collect();

@@ -17,9 +17,10 @@ use seamstress_mesh::TriMesh;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_parametrize::map::Certificate;
 use seamstress_parametrize::{self as method, AlignmentTolerance, Tolerance};
+use seamstress_quads::GoesOn;
 use seamstress_quantize::{
-    IntegerCertificate, Quantization, QuantizationFailure, QuantizationStats, QuantizeError,
-    QuantizeOptions, quantize,
+    Decisions, IntegerCertificate, Quantization, QuantizationFailure, QuantizationStats,
+    QuantizeError, QuantizeOptions, quantize_deciding,
 };
 use serde::Serialize;
 
@@ -159,6 +160,15 @@ impl SeamlessStart {
     }
 }
 
+/// Decides for maps of any kind.
+struct AnyMap<'a>(&'a mut GoesOn<'a>);
+
+impl Decisions for AnyMap<'_> {
+    fn goes_on(&mut self, failure: &QuantizationFailure) -> bool {
+        (self.0)(failure)
+    }
+}
+
 impl Surface {
     /// Makes a seamless map whose cones suit the grid, and rounds it to an integer-grid map.
     ///
@@ -172,8 +182,11 @@ impl Surface {
             let asked = self.features_for(&options.map.features, options.size)?;
             self.integer_parts(&asked, options, watcher, |selection, options, watcher| {
                 let surface = &selection.surface;
-                let round = |start: &SeamlessStart, settings: &_, watcher: &mut Watcher| {
-                    Ok(surface.make_integer(start, settings, watcher)?)
+                let round = |start: &SeamlessStart,
+                             settings: &_,
+                             goes_on: &mut GoesOn<'_>,
+                             watcher: &mut _| {
+                    Ok(surface.make_integer(start, settings, goes_on, watcher)?)
                 };
                 surface.make_gridded(&selection.curves, options, watcher, round)
             })
@@ -210,7 +223,8 @@ impl Surface {
                 let followed = || surface.followed(&map, curves, &tolerance);
                 let features = is_asked.then(followed).transpose()?;
                 let start = SeamlessStart { map, features, tolerance };
-                let made = surface.make_integer(&start, &options.to_quantize(), watcher);
+                let made =
+                    surface.make_integer(&start, &options.to_quantize(), &mut |_| true, watcher);
                 let made =
                     made.map_err(|cause| surface.no_integer_map(&cause, options.rounding))?;
                 Ok((start, made))
@@ -286,12 +300,23 @@ impl Surface {
         &self,
         start: &SeamlessStart,
         settings: &QuantizeOptions,
+        goes_on: &mut GoesOn<'_>,
         watcher: &mut Watcher,
     ) -> Result<Quantization, QuantizeError> {
         let kept = start.kept(self.mesh());
         let mut observe = |progress| watcher.observe(progress);
         let settings = QuantizeOptions { given: start.tolerance, ..*settings };
-        quantize(self.mesh(), self.positions(), &start.map, &kept, &settings, &mut observe)
+        let mut decisions = AnyMap(goes_on);
+        let (mesh, positions) = (self.mesh(), self.positions());
+        quantize_deciding(
+            mesh,
+            positions,
+            &start.map,
+            &kept,
+            &settings,
+            &mut decisions,
+            &mut observe,
+        )
     }
 
     /// Why a map could not be rounded, with the elements that it names.
@@ -307,7 +332,9 @@ impl Surface {
         };
         let failed: Vec<FailedPart> = failed
             .iter()
-            .map(|part| self.failed_part(part, &self.failed_rounding(&part.cause, rounding)))
+            .map(|part| {
+                self.failed_part(part.component, &self.failed_rounding(&part.cause, rounding))
+            })
             .collect();
         self.no_parts(ErrorKind::NoIntegerMap, "no certified integer-grid map", failed)
     }

@@ -9,13 +9,14 @@ use crate::options::MapOptions;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
+use seamstress_mesh::Vertex;
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
     self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Violations,
     make_aligned_map,
 };
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 #[cfg(feature = "io")]
 use std::{io, path::Path};
 
@@ -315,23 +316,16 @@ impl Surface {
 
     /// Why there is no map.
     pub(crate) fn no_map(&self, cause: &MapError) -> Error {
-        let elements = |elements: Elements| self.in_input(&elements);
         match cause {
             MapError::Cancelled(_) => Error::cancelled(),
-            MapError::Released { released } => {
-                let edges = released.iter().map(|feature| feature.vertices).collect();
-                let found = Elements { edges, ..Elements::default() };
-                Error::new(ErrorKind::DroppedFeatures, cause.to_string())
-                    .with_elements(elements(found))
-                    .with_hint("without `features_strict` the map is made without them")
-            }
+            MapError::Released { released } => self.no_strict_map(released),
             MapError::Field(_) | MapError::Cones(_) => {
                 Error::new(ErrorKind::BadStart, cause.to_string())
             }
             MapError::Components(failed) => {
                 let failed = failed.iter().map(|part| {
                     let error = Error::new(ErrorKind::NoMap, part.cause.to_string());
-                    self.failed_part(part, &error.with_hint(LIMIT))
+                    self.failed_part(part.component, &error.with_hint(LIMIT))
                 });
                 self.no_parts(ErrorKind::NoMap, "no certified map", failed.collect())
             }
@@ -346,6 +340,31 @@ impl Surface {
                 }
             }
         }
+    }
+
+    /// Why there is no map along all features: what of each component could not be aligned.
+    fn no_strict_map(&self, released: &[ReleasedFeature]) -> Error {
+        let (component_of, n_components) = self.mesh().connected_faces();
+        let mut released_of = BTreeMap::<usize, Vec<ReleasedFeature>>::new();
+        for feature in released {
+            let at = self.mesh().outgoing(Vertex(feature.vertices[0])).next();
+            let component = at.map_or(0, |h| component_of[h.face()] as usize);
+            released_of.entry(component).or_default().push(*feature);
+        }
+        let error = |released: Vec<ReleasedFeature>| {
+            let edges = released.iter().map(|feature| feature.vertices).collect();
+            let elements = self.in_input(&Elements { edges, ..Elements::default() });
+            Error::new(ErrorKind::DroppedFeatures, MapError::Released { released }.to_string())
+                .with_elements(elements)
+                .with_hint("without `features_strict` the map is made without them")
+        };
+        if n_components == 1 {
+            return error(released.to_vec());
+        }
+        let failed = released_of
+            .into_iter()
+            .map(|(component, released)| self.failed_part(component, &error(released)));
+        self.no_parts(ErrorKind::DroppedFeatures, "no map along all features", failed.collect())
     }
 
     /// A fault of this program.

@@ -6,7 +6,7 @@ use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::surface::Surface;
 use crate::words::counted;
-use seamstress_mesh::components::{Component, FailedComponent, components};
+use seamstress_mesh::components::{Component, components};
 use seamstress_quads::Extraction;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -64,13 +64,9 @@ pub struct PartReport {
 
 impl Surface {
     /// A component that failed with an error, which says why.
-    pub(crate) fn failed_part<E: std::error::Error>(
-        &self,
-        failed: &FailedComponent<E>,
-        error: &Error,
-    ) -> FailedPart {
+    pub(crate) fn failed_part(&self, component: usize, error: &Error) -> FailedPart {
         let pieces = components(self.mesh()).unwrap_or_default();
-        let faces = pieces.get(failed.component).map(|piece| self.input_faces(piece));
+        let faces = pieces.get(component).map(|piece| self.input_faces(piece));
         let faces = faces.unwrap_or_default();
         let first_face = faces.first().copied().unwrap_or_default();
         let elements = match error.elements() {
@@ -78,7 +74,7 @@ impl Surface {
             elements => elements.clone(),
         };
         FailedPart {
-            component: failed.component as u32,
+            component: component as u32,
             first_face,
             faces: faces.len(),
             code: error.code(),

@@ -21,9 +21,9 @@ use seamstress_parametrize::progress::go_on;
 use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
-    self as quads, ExtractError, ExtractOptions, Extraction, IrregularVertex, ManifoldError,
-    ManifoldQuads, QuadConnectivity, QuadFaults, SmoothError, SmoothOptions, UntangleOptions,
-    manifold_quads,
+    self as quads, ExtractError, ExtractOptions, Extraction, GoesOn, IrregularVertex,
+    ManifoldError, ManifoldQuads, QuadConnectivity, QuadFaults, SmoothError, SmoothOptions,
+    UntangleOptions, manifold_quads,
 };
 use seamstress_quantize::{IntegerCertificate, Quantization, QuantizationStats};
 use serde::Serialize;
@@ -319,10 +319,13 @@ impl Selection {
         let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length)?;
         let surface = &work.surface;
         let (mesh, positions) = (surface.mesh(), surface.positions());
-        let round = |start: &SeamlessStart, settings: &_, watcher: &mut Watcher| {
+        let round = |start: &SeamlessStart,
+                     settings: &_,
+                     goes_on: &mut GoesOn<'_>,
+                     watcher: &mut Watcher| {
             let (map, kept) = (&start.map, start.kept(mesh));
             let mut observe = |progress| watcher.observe(progress);
-            manifold_quads(mesh, positions, map, &kept, settings, &mut observe)
+            manifold_quads(mesh, positions, map, &kept, settings, goes_on, &mut observe)
         };
         let (start, made) = surface.make_gridded(&work.curves, &integer, watcher, round)?;
         let ManifoldQuads { quantization: solution, mut extraction, connectivity, .. } = made;

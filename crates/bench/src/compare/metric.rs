@@ -98,11 +98,41 @@ const BAD_QUADS: Metric = Metric {
     scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
 };
 
+const DROPPED: Metric = Metric {
+    title: "features dropped",
+    decimals: 0,
+    value: |report| report.get("/features/dropped").as_array().map(|dropped| dropped.len() as f64),
+    scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
+};
+const COVER: Metric = Metric {
+    title: "area lost %",
+    decimals: 1,
+    value: |report| report.number("/judged/cover").map(|cover| 100.0 * (1.0 - cover).abs()),
+    scale: Some(Scale { ideal: 0.0, floor: 1.0 }),
+};
+/// What distances count as no more than: they are in cells.
+const DISTANCE_FLOOR: f64 = 0.05;
+const CREASES: Metric = Metric {
+    title: "creases",
+    decimals: 3,
+    value: |report| report.number("/judged/crease_p95"),
+    scale: Some(Scale { ideal: 0.0, floor: DISTANCE_FLOOR }),
+};
+const RIMS: Metric = Metric {
+    title: "rims",
+    decimals: 3,
+    value: |report| report.number("/judged/rim_p95"),
+    scale: Some(Scale { ideal: 0.0, floor: DISTANCE_FLOOR }),
+};
+
 /// The metrics of `map`.
 pub(super) const MAP_METRICS: &[Metric] = &[TAU, ENERGY, CONES, SECONDS];
 /// The metrics of `quad`: tau and energy are those of the integer-grid map.
 pub(super) const QUAD_METRICS: &[Metric] =
-    &[QUADS, OFF, IRREGULAR, BAD_QUADS, TAU, ENERGY, SECONDS];
+    &[QUADS, OFF, IRREGULAR, BAD_QUADS, DROPPED, TAU, ENERGY, SECONDS];
+/// Those of `quad` with what a script says of the quads.
+pub(super) const JUDGED_METRICS: &[Metric] =
+    &[QUADS, OFF, COVER, CREASES, RIMS, IRREGULAR, BAD_QUADS, DROPPED, TAU, ENERGY, SECONDS];
 
 #[cfg(test)]
 mod tests {

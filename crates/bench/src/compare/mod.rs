@@ -9,7 +9,8 @@ use crate::meshes::{Selection, name};
 use crate::output::{Section, progress};
 use crate::program::{Outcome, Program};
 use clap::value_parser;
-use metric::{MAP_METRICS, Metric, QUAD_METRICS};
+use metric::{JUDGED_METRICS, MAP_METRICS, Metric, QUAD_METRICS};
+use serde_json::Value;
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -19,7 +20,7 @@ use summary::summary;
 
 /// Comparison: two builds or settings of `seamstress` on the same meshes
 ///
-/// Maps every mesh with both, and makes its quads too if `--quads` is given. Each cell shows `old -> new`, or one
+/// Maps every mesh with both, and makes its quads for each `--quads` that is given. Each cell shows `old -> new`, or one
 /// value where both agree. A summary counts the meshes that are lost (the old one succeeds, the new one does not),
 /// gained, and worse by more than a percentage. It counts as a failure if a mesh is lost.
 #[derive(Debug, clap::Args)]
@@ -33,9 +34,17 @@ pub struct Args {
     #[command(flatten)]
     selection: Selection,
 
-    /// Compare the quad meshes for this count as well
+    /// Compare the quad meshes for this count as well; may be repeated
     #[arg(long, value_name = "N")]
-    quads: Option<f64>,
+    quads: Vec<f64>,
+
+    /// Judge quad meshes by this Python script too
+    ///
+    /// It is called as `python3 SCRIPT --json --asked N SOURCE QUADS` and prints a JSON object with `cover`, the area of
+    /// the quads as a share of the source's, and `crease_p95` and `rim_p95`, the distances of the source's creases and
+    /// boundaries from edges of quads.
+    #[arg(long, value_name = "SCRIPT", requires = "quads")]
+    judge: Option<PathBuf>,
 
     /// Count a mesh as worse if a metric is worse by more than this
     #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
@@ -74,6 +83,8 @@ pub struct Args {
 struct Task {
     title: String,
     command: &'static str,
+    /// The number of quads asked for, and what judges them.
+    judged: Option<(f64, PathBuf)>,
     arguments: Vec<OsString>,
     metrics: &'static [Metric],
 }
@@ -83,17 +94,19 @@ impl Task {
         let map = Self {
             title: "Maps".into(),
             command: "map",
+            judged: None,
             arguments: args.arguments.clone(),
             metrics: MAP_METRICS,
         };
-        let quads = args.quads.map(|count| Self {
+        let quads = |&count: &f64| Self {
             title: format!("{count} quads"),
             command: "quad",
+            judged: args.judge.clone().map(|script| (count, script)),
             arguments: [vec!["--quads".into(), count.to_string().into()], args.arguments.clone()]
                 .concat(),
-            metrics: QUAD_METRICS,
-        });
-        [Some(map), quads].into_iter().flatten().collect()
+            metrics: if args.judge.is_some() { JUDGED_METRICS } else { QUAD_METRICS },
+        };
+        [map].into_iter().chain(args.quads.iter().map(quads)).collect()
     }
 }
 
@@ -168,9 +181,19 @@ impl Build {
 
     fn run(&self, mesh: &Path, task: &Task) -> (Outcome, PathBuf) {
         // The whole file name stays, since files may differ in their extensions only.
-        let output = self.folder.join(format!("{}.{}.obj", name(mesh), task.command));
+        let file = format!("{}.{}.obj", name(mesh), task.title.to_lowercase().replace(' ', "_"));
+        let output = self.folder.join(file);
         let arguments = [task.arguments.as_slice(), &self.arguments].concat();
         let outcome = self.program.run(task.command, mesh, &output, &arguments);
+        let outcome = match (outcome, &task.judged) {
+            (Outcome::Done(report), Some((asked, script))) => {
+                match judge(script, *asked, mesh, &output) {
+                    Ok(verdict) => Outcome::Done(report.with("judged", verdict)),
+                    Err(e) => Outcome::Failed(format!("not judged: {e}")),
+                }
+            }
+            (outcome, _) => outcome,
+        };
         (outcome, output)
     }
 }
@@ -210,6 +233,17 @@ impl Pair {
         }));
         cells
     }
+}
+
+/// What a script says of quads.
+fn judge(script: &Path, asked: f64, source: &Path, quads: &Path) -> Result<Value, Box<dyn Error>> {
+    let mut command = std::process::Command::new("python3");
+    command.arg(script).args(["--json", "--asked", &asked.to_string()]).args([source, quads]);
+    let output = command.output()?;
+    serde_json::from_slice(&output.stdout).map_err(|_| {
+        let text = String::from_utf8_lossy(&output.stderr);
+        text.lines().last().unwrap_or("no message").into()
+    })
 }
 
 fn change(old: String, new: String) -> String {

@@ -280,3 +280,33 @@ fn small_parts_are_counted() {
     assert!(run.stdout.contains(&format!("{row}left out")), "{run:#?}");
     assert_eq!(lines_of(&folder.read("q.obj"), "f").len(), 600);
 }
+
+#[test]
+fn a_part_that_fails_is_named_and_the_others_are_quads_on_request() {
+    let folder = Folder::new();
+    // Twelve creases meet at the tip, where there is not even one quarter turn.
+    let spike = kit::pyramid(12, 8.0);
+    folder.write_obj("both.obj", &kit::disjoint_union(&[kit::cube(), spike]));
+    let command = [
+        "quad",
+        "both.obj",
+        "--quads",
+        "200",
+        "--features",
+        "angle:20",
+        "--features-strict",
+        "-o",
+        "q.obj",
+    ];
+    let run = folder.expect(3, &command);
+    assert!(run.stderr.contains(" of 1 of 2 components:\n  component 1 ("), "{run:#?}");
+    assert!(run.stderr.contains(" feature edges could not be aligned: "), "{run:#?}");
+    assert!(run.stderr.ends_with("; `--partial` makes the other components\n"), "{run:#?}");
+    assert_eq!(folder.names(), ["both.obj"]);
+
+    let run = folder.expect(3, &[&command[..], &["--partial"]].concat());
+    assert!(run.stdout.contains("\nfailed       component 1 ("), "{run:#?}");
+    assert!(run.stdout.contains(" from face 12); left out\n"), "{run:#?}");
+    let written = json(&folder.expect(0, &["check", "q.obj", "--json"]).stdout);
+    assert_eq!(written["input"]["components"].as_array().map(Vec::len), Some(1));
+}

@@ -25,6 +25,7 @@ use patch::{CurveEdge, Patch};
 use score::worst_corner;
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::progress::{Cancelled, Observer, Stage, Watch};
+use std::collections::BTreeMap;
 
 /// What to untangle.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,16 +132,19 @@ fn untangle_within(
         sites: homes.par_iter().map(site).collect(),
         sides: patch::side_lengths(&connectivity, mesh),
         curve_edges: patch::curve_edges(&stretches, homes.len()),
+        improved: 0,
+        moved: vec![0; homes.len()],
+        failed: BTreeMap::new(),
     };
     let deviation = options.deviation.to_radians().sin();
     for sweep in 0..SWEEPS {
         watch.tick(sweep as f64 / SWEEPS as f64)?;
         let bound = |reach: &Reach| if reach.for_angles { deviation } else { STRAIGHT };
-        let mut improved = 0;
-        for reach in reaches {
-            improved += state.sweep(reach, bound(reach), &mut watch)?;
+        let before = state.improved;
+        for (number, reach) in reaches.iter().enumerate() {
+            state.sweep(number, reach, bound(reach), &mut watch)?;
         }
-        if improved == 0 {
+        if state.improved == before {
             break;
         }
     }
@@ -172,36 +176,57 @@ struct State<'a> {
     sides: Vec<[f64; 2]>,
     /// Of each vertex, the edges along curves that start there.
     curve_edges: Vec<Vec<CurveEdge>>,
+    /// Patches improved.
+    improved: usize,
+    /// How many had been improved with the last one that moved a vertex.
+    moved: Vec<usize>,
+    /// How many had been improved when a quad could not be with a reach: in vain again until something around moves.
+    failed: BTreeMap<(u32, usize), usize>,
 }
 
 impl State<'_> {
-    /// Improves the patches around all quads worse than a bound; says how many of them became better.
+    /// Improves the patches around all quads worse than a bound.
     ///
     /// # Errors
     /// Where the observer breaks.
     fn sweep(
         &mut self,
+        number: usize,
         reach: &Reach,
         bound: f64,
         watch: &mut Watch<'_, '_>,
-    ) -> Result<usize, Cancelled> {
+    ) -> Result<(), Cancelled> {
         let is_bad = |state: &Self, q: u32| worst_corner(state.corners(q)) > bound;
         let quads: Vec<u32> = (0..self.quads.len() as u32).collect();
         let bad: Vec<u32> = quads.into_par_iter().filter(|&q| is_bad(self, q)).collect();
-        let mut improved = 0;
         for q in bad {
             watch.pulse()?;
             if is_bad(self, q) {
-                let patch = Patch::new(self, q, reach);
-                if let Some(sites) = untangled(self.domain, &patch, bound) {
-                    improved += 1;
-                    for (&v, site) in patch.vertices.iter().zip(sites) {
-                        self.sites[v as usize] = site;
-                    }
-                }
+                self.improve(q, number, reach, bound);
             }
         }
-        Ok(improved)
+        Ok(())
+    }
+
+    /// Improves the patch around a quad, unless that was in vain and nothing has moved since.
+    fn improve(&mut self, quad: u32, number: usize, reach: &Reach, bound: f64) {
+        let patch = Patch::new(self, quad, reach);
+        if let Some(&then) = self.failed.get(&(quad, number))
+            && patch.vertices.iter().all(|&v| self.moved[v as usize] <= then)
+        {
+            return;
+        }
+        let Some(sites) = untangled(self.domain, &patch, bound) else {
+            self.failed.insert((quad, number), self.improved);
+            return;
+        };
+        self.improved += 1;
+        for (&v, site) in patch.vertices.iter().zip(sites) {
+            let v = v as usize;
+            if self.sites[v] != site {
+                (self.sites[v], self.moved[v]) = (site, self.improved);
+            }
+        }
     }
 
     fn corners(&self, quad: u32) -> [Site; 4] {

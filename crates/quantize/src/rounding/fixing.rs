@@ -64,8 +64,9 @@ pub(super) struct Choice {
 }
 
 impl<'a> Fixing<'a> {
-    pub(super) fn new(problem: &'a RoundingProblem<'a>) -> Self {
-        let start = Conditional::new(problem.energy.covariance.clone(), problem.mean.clone());
+    /// Nothing fixed yet, around a point.
+    pub(super) fn new(problem: &'a RoundingProblem<'a>, at: &[f64]) -> Self {
+        let start = Conditional::new(problem.energy.covariance.clone(), at.to_vec());
         let constraints = &problem.constraints;
         let mean = |c: &Constraint| c.rows.each_ref().map(|row| apply(row, start.mean()));
         let variance = |c: &Constraint| c.rows.iter().map(|row| start.variance(row)).sum();
@@ -103,10 +104,7 @@ impl<'a> Fixing<'a> {
     /// ends, with energies a hundred times as high.
     pub(super) fn choose(&self, i: usize) -> Option<Choice> {
         let problem = self.problem;
-        let parts = self.parts(i);
-        if parts.effects.iter().any(|effect| matches!(effect, Effect::NoUnit)) {
-            return None;
-        }
+        let parts = self.parts(i)?;
         // Which connections get determined does not depend on the value.
         let left = |j: usize| {
             let [first, second] = parts.settles(j);
@@ -153,12 +151,15 @@ impl<'a> Fixing<'a> {
         }
     }
 
-    /// What fixing the two rows of a connection, one after the other, would do.
-    fn parts(&self, i: usize) -> Parts {
+    /// What fixing the two rows of a connection, one after the other, would do, if they can be set to any integers.
+    fn parts(&self, i: usize) -> Option<Parts> {
         let rows = &self.problem.constraints[i].rows;
-        let [first, mut second] = rows.each_ref().map(|row| self.now.spread(row));
         let effect = self.now.effect(&rows[0], None);
         let effects = [effect.clone(), self.now.effect(&rows[1], Some(&effect))];
+        if effects.iter().any(|effect| matches!(effect, Effect::NoUnit)) {
+            return None;
+        }
+        let [first, mut second] = rows.each_ref().map(|row| self.now.spread(row));
         let variance = apply(&rows[0], &first);
         if matches!(effect, Effect::Free { .. }) {
             let gain = apply(&rows[1], &first) / variance;
@@ -172,7 +173,7 @@ impl<'a> Fixing<'a> {
             false => [[0.0; 2]; 2],
         };
         let all = self.variances.par_iter().enumerate().with_min_len(CHUNK);
-        Parts { effects, variances, couplings: all.map(coupling).collect() }
+        Some(Parts { effects, variances, couplings: all.map(coupling).collect() })
     }
 
     /// How far a value is from the mean of the first row, and then from that of the second.

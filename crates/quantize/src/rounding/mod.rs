@@ -1,5 +1,6 @@
 //! Choosing the integers: a closest vector problem in which no connection may collapse.
 
+mod apart;
 mod basis;
 mod conditional;
 mod fixing;
@@ -8,6 +9,7 @@ mod problem;
 
 pub use problem::{Constraint, ReducedEnergy, RoundingProblem, Rule, Violations};
 
+use apart::drawn_apart;
 use conditional::Conditional;
 use fixing::Fixing;
 use seamstress_parametrize::progress::{Cancelled, Watch};
@@ -50,7 +52,7 @@ pub fn round_greedily(problem: &RoundingProblem<'_>) -> Vec<i64> {
     Conditional::new(problem.energy.covariance.clone(), problem.mean.clone()).round_rest()
 }
 
-/// Rounds the shortest connections first, then the rest, then improves the result by local search; if some connections
+/// Draws apart what is too short, rounds the shortest connections first, then the rest, then improves the result by local search; if some connections
 /// were hard to keep, once more with these before all others, and again while constraints are violated. Returns what
 /// violates least, or has the least energy, after so many passes at most.
 ///
@@ -62,7 +64,8 @@ pub fn round(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, Cancelled> {
     let mut times_hard = vec![0; problem.constraints.len()];
-    let mut best = round_once(problem, &times_hard, watch)?;
+    let start = drawn_apart(problem, watch)?;
+    let mut best = round_once(problem, &start, &times_hard, watch)?;
     let mut hard = best.hard.clone();
     for pass in 1..MOST_PASSES.min(passes) {
         let is_enough = pass > 1 && best.violated.count == 0;
@@ -70,7 +73,7 @@ pub fn round(
             break;
         }
         hard.into_iter().for_each(|i| times_hard[i] += 1);
-        let next = round_once(problem, &times_hard, watch)?;
+        let next = round_once(problem, &start, &times_hard, watch)?;
         hard = next.hard.clone();
         let key = |rounding: &Rounding| (rounding.violated.count, rounding.energy);
         if key(&next) < key(&best) {
@@ -81,14 +84,15 @@ pub fn round(
     Ok(best)
 }
 
-/// One pass of [`round`].
+/// One pass of [`round`], from a point.
 fn round_once(
     problem: &RoundingProblem<'_>,
+    start: &[f64],
     times_hard: &[u32],
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, Cancelled> {
-    let (start, conflicts) = fix_short_ones(problem, times_hard, watch)?;
-    let mut rounding = improve(problem, start.round_rest(), watch)?;
+    let (fixed, conflicts) = fix_short_ones(problem, start, times_hard, watch)?;
+    let mut rounding = improve(problem, fixed.round_rest(), watch)?;
     rounding.hard.extend(conflicts);
     rounding.hard.sort_unstable();
     rounding.hard.dedup();
@@ -110,14 +114,15 @@ pub fn improve(
     Ok(Rounding { x, violated, energy, hard, is_second: false, is_repaired, passes: 1 })
 }
 
-/// Fixes connections, the shortest as they are now first, at the cheapest value that lets no determined one vanish;
+/// Fixes connections around a point, the shortest as they are now first, at the cheapest value that lets no determined one vanish;
 /// returns those for which there was none as well.
 fn fix_short_ones(
     problem: &RoundingProblem<'_>,
+    start: &[f64],
     times_hard: &[u32],
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Conditional, Vec<usize>), Cancelled> {
-    let mut fixing = Fixing::new(problem);
+    let mut fixing = Fixing::new(problem, start);
     let mut open: Vec<usize> = (0..problem.constraints.len()).collect();
     let mut conflicts = Vec::new();
     loop {

@@ -211,6 +211,8 @@ pub struct RoundingProblem<'a> {
 pub struct Violations {
     /// How many constraints, single and joint ones.
     pub count: usize,
+    /// How many of them are infeasibility cuts.
+    pub cuts: usize,
     /// The displacements that have a part in it, by number.
     pub involved: Vec<usize>,
 }
@@ -229,14 +231,15 @@ impl RoundingProblem<'_> {
         let single =
             (0..self.constraints.len()).filter(|&i| self.constraints[i].shortage(at(i)) > 0);
         let mut involved: Vec<usize> = single.collect();
-        let mut count = involved.len();
+        let (mut count, mut cuts) = (involved.len(), 0);
         for (members, rule) in &self.joint {
             if !rule.allows(members.clone().map(|i| Some(at(i)))) {
                 count += 1;
+                cuts += usize::from(matches!(rule, Rule::Beyond { .. }));
                 involved.extend(members.clone());
             }
         }
-        Violations { count, involved }
+        Violations { count, cuts, involved }
     }
 
     /// For each constraint the joint one that it is a member of.

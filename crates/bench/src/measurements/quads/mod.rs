@@ -124,7 +124,15 @@ fn measure_mesh(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row,
     let options = QuantizeOptions { size: GridSize::Quads(asked), ..Default::default() };
     let (connectivity, nothing) = (&mesh.connectivity, EdgeSet::new(&mesh.connectivity, []));
     let mut go_on = |_| ControlFlow::Continue(());
-    let made = manifold_quads(connectivity, positions, &map, &nothing, &options, &mut go_on)?;
+    let made = manifold_quads(
+        connectivity,
+        positions,
+        &map,
+        &nothing,
+        &options,
+        &mut |_| true,
+        &mut go_on,
+    )?;
     let (integer, extraction) = (made.quantization.map, made.extraction);
 
     let counts = check::count(extraction.mesh.quads())?;
