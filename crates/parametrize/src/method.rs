@@ -1,4 +1,4 @@
-//! The direct method on one page (Levi 2021): unfold, round, lay out, relax, clean up, polish, certify.
+//! The direct method on one page (Levi 2021): unfold, round, clean up, lay out, relax, polish, certify.
 //!
 //! [`parametrize`] runs it on a connected mesh. Every stage takes values and returns new ones. The mesh comes with
 //! the edges that are to run along the axes ([`Domain`]); a stage that fails near some of them returns a domain
@@ -7,11 +7,11 @@
 
 mod baseline;
 mod certify;
+mod clean_up;
 mod component;
 mod components;
 mod domain;
 mod error;
-mod fewer_cones;
 mod finish;
 mod lay_out;
 mod log;
@@ -35,12 +35,12 @@ pub use start::Start;
 
 use crate::progress::{Stage, Watch};
 use certify::{ComponentMap, last_certified};
+use clean_up::clean_up;
 use domain::Domain;
-use fewer_cones::{CleanUpTerms, with_fewer_cones};
 use finish::{in_surface_metric, minimize};
 use lay_out::lay_out;
 use log::StageLog;
-use relaxed::{polish, relax};
+use relaxed::polish;
 use round::round;
 
 /// The seamless map of a connected mesh.
@@ -64,28 +64,20 @@ fn parametrize(
     let (domain, rounding) = round(domain, unfolding, start, options, watch)?;
     log.count(rounding.stats.layouts);
 
-    // Lay out with seams that close exactly, no flipped triangle and no wrong angle.
+    // Clean up: fewer cones, as far as an estimate of the distortion pays for it.
+    log.enter(Stage::CleanUp, watch)?;
+    let cleaned = clean_up(&domain, &rounding.start, start, options, watch)?;
+
+    // Lay out with seams that close exactly, no flipped triangle and no wrong angle; and relax to the smallest mean
+    // distortion.
     log.enter(Stage::Layout, watch)?;
-    let (domain, rounding, layout) = lay_out(domain, rounding, start, options, watch)?;
-
-    // Relax to the smallest mean distortion.
-    let relaxed = relax(&domain, layout, watch)?;
+    let (domain, rounding, relaxed) =
+        lay_out(domain, rounding, cleaned.as_ref(), start, options, watch)?;
     log.count(relaxed.iterations);
-
-    // Clean up: fewer cones, if the layout with them is worth it.
-    let cleaned = match CleanUpTerms::new(&domain, start, options) {
-        Some(terms) => {
-            log.enter(Stage::CleanUp, watch)?;
-            let (cleaned, iterations) = with_fewer_cones(&domain, relaxed, &terms, watch)?;
-            log.count(iterations);
-            cleaned
-        }
-        None => relaxed,
-    };
 
     // Polish: lower the worst distortion for a bounded rise of the mean.
     log.enter(Stage::Polish, watch)?;
-    let (layout, iterations) = polish(&domain, cleaned, options.polish.as_ref(), watch)?;
+    let (layout, iterations) = polish(relaxed, options.polish.as_ref(), watch)?;
     log.count(iterations);
     let route = layout.route;
     let mut candidates = vec![domain.corner_uvs(&layout)];

@@ -14,10 +14,10 @@ pub enum Stage {
     Cut,
     /// Rounding the matchings.
     Rounding,
-    /// The exact seamless layout of low energy.
-    Layout,
     /// Removing and moving cones.
     CleanUp,
+    /// The exact seamless layout of low energy.
+    Layout,
     /// Lowering the largest distortion.
     Polish,
     /// Minimising the objective asked for.

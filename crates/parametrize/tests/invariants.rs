@@ -4,8 +4,11 @@
 mod common;
 
 use common::{real_indices, surface, unwatched};
+use seamstress_mesh::features::sharp_edges;
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_mesh::{
+    Face, FaceData, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData,
+};
 use seamstress_parametrize::Sectors;
 use seamstress_parametrize::cut::{
     Cut, DualTree, FramedCut, MatchedCut, SeamGraph, Unfolding, connect_cones, turned_vertices,
@@ -13,7 +16,8 @@ use seamstress_parametrize::cut::{
 };
 use seamstress_parametrize::features::index_bounds;
 use seamstress_parametrize::rounding::{
-    CleanUpOptions, ConeCount, Repair, RoundingOptions, clean_up, fix_holonomy, repair, round,
+    CleanUpOptions, ConeCount, Repair, RoundingOptions, Surrogate, clean_up, fix_holonomy, repair,
+    round,
 };
 use seamstress_testkit as kit;
 
@@ -296,50 +300,90 @@ fn new_holonomy_keeps_every_index() {
         matched.matching.iter_mut().for_each(|r| *r += rng.below(3) as i32 - 1);
         let before = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let sum: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
-        let matched = fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched).unwrap();
+        let FramedCut { matched, frames } =
+            fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched).unwrap();
+        assert_eq!(frames.len(), mesh.n_faces());
         assert_eq!(matched.sector_indices(&Sectors::unaligned(&mesh), &metric), before);
         let after: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         assert!((sum - after).abs() < 1e-8);
         // What is best is not changed again.
         let again = fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched.clone()).unwrap();
-        assert_eq!(again.matching, matched.matching);
+        assert_eq!(again.matched.matching, matched.matching);
+    }
+}
+
+/// Sectors of a surface with nothing aligned, and of one slit into pieces that are closed, open or bounded by features.
+fn with_sectors(test: impl Fn(&Sectors<'_>, &Metric)) {
+    for soup in shapes() {
+        let (mesh, metric) = surface(&soup);
+        test(&Sectors::unaligned(&mesh), &metric);
+    }
+    for soup in [kit::subdivide(&kit::cube()), kit::subdivide(&kit::l_bracket())] {
+        let (mesh, metric) = surface(&soup);
+        let creases = sharp_edges(&mesh, &soup.positions, 0.7);
+        test(&Sectors::new(&mesh, &metric, &creases), &metric);
     }
 }
 
 #[test]
-fn clean_up_never_makes_cones() {
-    for soup in shapes() {
-        let (mesh, metric) = surface(&soup);
-        for price in [0.0006, 0.01, 1.0] {
-            let start = rounded_with_frames(&mesh, &metric);
-            let count = |matched: &MatchedCut| {
-                matched
-                    .sector_indices(&Sectors::unaligned(&mesh), &metric)
-                    .iter()
-                    .filter(|&&k| k != 0)
-                    .count()
-            };
-            let before = count(&start.matched) as i32;
-            let options = CleanUpOptions {
-                price,
-                count: ConeCount::Cones,
-                largest_scale: f64::INFINITY,
-                largest_deviation: 1.5,
-            };
-            let (FramedCut { matched, .. }, stats) = unwatched(|watch| {
-                clean_up(&Sectors::unaligned(&mesh), &metric, &start, &options, watch)
-            })
-            .unwrap();
-            assert_eq!(stats.saved, before - count(&matched) as i32);
-            assert!(stats.saved >= 0);
-            let real = real_indices(&mesh, &metric, &matched);
-            let expected = 4.0 * mesh.euler_characteristic() as f64;
-            assert!((real.iter().sum::<f64>() - expected).abs() < 1e-8);
-            for v in mesh.vertices().filter(|&v| !mesh.is_boundary(v)) {
-                assert!((real[v.at()] - real[v.at()].round()).abs() < 1e-8);
-                let (low, high) = index_bounds(mesh.valence(v));
-                assert!((low..=high).contains(&(real[v.at()].round() as i32)));
+fn the_surrogate_tells_exactly_what_a_unit_of_index_changes() {
+    with_sectors(|sectors, metric| {
+        let slit = sectors.slit();
+        let fixed: Vec<Vertex> = slit.vertices().filter(|&s| !sectors.is_free(s)).collect();
+        let mut rng = kit::Rng::new(7);
+        let mut index = VertexData::filled(slit.n_vertices(), 0);
+        fixed.iter().for_each(|&s| index[s] = rng.below(3) as i32 - 1);
+        let mut surrogate = Surrogate::new(sectors, metric, &index).unwrap();
+        let energy = surrogate.energy();
+        for _ in 0..5 {
+            let [near, far] = [(); 2].map(|()| fixed[rng.below(fixed.len())]);
+            let response = surrogate.responses(&[near]).pop().unwrap();
+            for sign in [1, -1] {
+                let told = surrogate.change(sign, [near, far], &response);
+                let mut moved = index.clone();
+                moved[near] -= sign;
+                moved[far] += sign;
+                surrogate.refresh(metric, &moved);
+                let change = surrogate.energy() - energy;
+                surrogate.refresh(metric, &index);
+                assert!((told - change).abs() < 1e-4 * (energy + change.abs()), "{told} {change}");
             }
         }
-    }
+    });
+}
+
+#[test]
+fn clean_up_never_makes_cones() {
+    with_sectors(|sectors, metric| {
+        let unfolding = Unfolding::through_curved_sectors(sectors, metric);
+        let options = RoundingOptions::default();
+        let rounding = unwatched(|watch| round(sectors, metric, unfolding, &options, watch));
+        let Repair { matched: start, hopeless, .. } =
+            repair(sectors, metric, rounding.unwrap().start.matched);
+        assert_eq!(hopeless, []);
+        let cost = |matched: &MatchedCut| {
+            let index = matched.sector_indices(sectors, metric);
+            let cones = index.enumerate().filter(|&(s, &k)| k != sectors.preferred(s)).count();
+            (cones as i32, Surrogate::new(sectors, metric, &index).unwrap().energy())
+        };
+        let (before, energy_before) = cost(&start);
+        for price in [0.0006, 0.01, 1.0] {
+            let count = ConeCount::Cones;
+            let options = CleanUpOptions { price, count, largest_deviation: 1.5 };
+            let (matched, stats) =
+                unwatched(|watch| clean_up(sectors, metric, &start, &options, watch)).unwrap();
+            let (after, energy) = cost(&matched);
+            assert_eq!(stats.saved, before - after);
+            assert!(stats.saved >= 0);
+            assert!((energy - stats.energy).abs() <= 1e-9 * (1.0 + energy));
+            // The cones saved pay for what the energy rises.
+            let most = energy_before + price * f64::from(stats.saved);
+            assert!(energy <= most * (1.0 + 1e-6) + 1e-9, "{energy} {most}");
+            let index = matched.sector_indices(sectors, metric);
+            for s in sectors.slit().vertices().filter(|&s| !sectors.is_free(s)) {
+                let (low, high) = sectors.bounds(s);
+                assert!((low..=high).contains(&index[s]));
+            }
+        }
+    });
 }

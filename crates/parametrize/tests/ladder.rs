@@ -62,7 +62,7 @@ fn triangles_without_area_are_opened_and_no_edge_is_longer() {
 
 #[test]
 fn flat_surfaces_may_need_edges_that_are_much_longer() {
-    let torus = kit::bumpy(&kit::seven_vertex_torus(), 0.3, 0);
+    let torus = kit::bumpy(&kit::seven_vertex_torus(), 0.3, 5);
     let (_, lengthening) = held(&kit::stretch(&torus, [1.0, 1.0, 0.0]));
     assert!(lengthening > 0.1, "{lengthening}");
 }

@@ -22,7 +22,8 @@ use std::ops::ControlFlow;
 ///
 /// For every mesh of one component, in one process: the median time of a numeric Cholesky factorisation of its
 /// cotangent system (two unknowns per vertex, by faer on one thread, in the order of METIS: a yardstick that stays
-/// the same whatever solver the method uses), and the time of a whole map with default settings. For several meshes, the order of growth of both with the number of triangles. On a busy machine only
+/// the same whatever solver the method uses), and the time of a whole map with
+/// default settings, in all and by stages, with its quality. For several meshes, the order of growth of both with the number of triangles. On a busy machine only
 /// the CPU ratio means anything.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -70,10 +71,20 @@ struct Measurement {
     triangles: usize,
     factorisation: Cost,
     map: Cost,
-    /// Seconds of the stages of that map.
-    stages: BTreeMap<Stage, f64>,
+    /// What came of it, the same in every repetition.
+    outcome: Outcome,
     /// Bytes.
     peak: Option<f64>,
+}
+
+/// How a map was made, and how good it is.
+struct Outcome {
+    /// Seconds of the stages.
+    stages: BTreeMap<Stage, f64>,
+    tau: f64,
+    /// Mean symmetric Dirichlet energy beyond the least possible.
+    excess: f64,
+    cones: usize,
 }
 
 /// None for a mesh of several components.
@@ -92,12 +103,12 @@ fn measure_mesh(subject: &Subject, repeat: u16) -> Result<Option<Measurement>, B
         maps.push(time_map(&mesh, &positions)?);
     }
     let medians = median(factorisations, |cost| cost.wall).zip(median(maps, |(cost, _)| cost.wall));
-    Ok(medians.map(|(factorisation, (map, stages))| Measurement {
+    Ok(medians.map(|(factorisation, (map, outcome))| Measurement {
         name: subject.name.clone(),
         triangles: mesh.n_faces(),
         factorisation,
         map,
-        stages,
+        outcome,
         peak: peak_memory(),
     }))
 }
@@ -137,10 +148,7 @@ fn time_factorisation(mesh: &TriMesh, positions: &[[f64; 3]]) -> Result<Cost, Bo
     Ok(Cost { wall, cpu })
 }
 
-fn time_map(
-    mesh: &TriMesh,
-    positions: &[[f64; 3]],
-) -> Result<(Cost, BTreeMap<Stage, f64>), Box<dyn Error>> {
+fn time_map(mesh: &TriMesh, positions: &[[f64; 3]]) -> Result<(Cost, Outcome), Box<dyn Error>> {
     let clock = Clock::start();
     let mut go_on = |_| ControlFlow::Continue(());
     let solution = make_map(mesh, positions, &MapOptions::default(), &mut go_on)?;
@@ -149,40 +157,44 @@ fn time_map(
     for lap in solution.components.iter().flat_map(|c| &c.stages) {
         *stages.entry(lap.stage).or_default() += lap.seconds;
     }
-    Ok((cost, stages))
+    let outcome = Outcome {
+        stages,
+        tau: solution.distortion.tau,
+        excess: solution.distortion.symmetric_dirichlet - 4.0,
+        cones: solution.map.cones().len(),
+    };
+    Ok((cost, outcome))
 }
 
 fn table(measured: &[Measurement]) -> Table {
-    let stages: BTreeSet<Stage> = measured.iter().flat_map(|m| m.stages.keys().copied()).collect();
-    let mut titles: Vec<String> = [
-        "mesh",
-        "triangles",
-        "factorisation s",
-        "map wall s",
-        "map CPU s",
-        "wall ratio",
-        "CPU ratio",
-    ]
-    .map(String::from)
-    .into();
-    titles.extend(stages.iter().map(|stage| format!("{} %", stage.name())));
-    titles.extend(["rest %".into(), "MB".into()]);
+    let stages = measured.iter().flat_map(|m| m.outcome.stages.keys().copied());
+    let stages: BTreeSet<Stage> = stages.collect();
+    let mut titles: Vec<String> =
+        ["mesh", "triangles", "unit s", "wall s", "CPU s", "wall units", "CPU units"]
+            .map(String::from)
+            .into();
+    titles.extend(stages.iter().map(|stage| stage.name().to_owned()));
+    titles.extend(["rest", "MB", "tau", "SD - 4", "cones"].map(String::from));
     let mut table = Table::new(titles);
     for m in measured {
-        let percent = |seconds: f64| number(100.0 * seconds / m.map.wall, 0);
+        let units = |seconds: f64| number(seconds / m.factorisation.wall, 1);
+        let outcome = &m.outcome;
         let mut cells = vec![
             m.name.clone(),
             m.triangles.to_string(),
             number(m.factorisation.wall, 4),
             number(m.map.wall, 2),
             number(m.map.cpu, 2),
-            number(m.map.wall / m.factorisation.wall, 1),
+            units(m.map.wall),
             number(m.map.cpu / m.factorisation.cpu, 1),
         ];
-        let seconds = |stage| m.stages.get(stage).copied().unwrap_or(0.0);
-        cells.extend(stages.iter().map(|stage| percent(seconds(stage))));
-        cells.push(percent(m.map.wall - m.stages.values().sum::<f64>()));
+        let seconds = |stage| outcome.stages.get(stage).copied().unwrap_or(0.0);
+        cells.extend(stages.iter().map(|stage| units(seconds(stage))));
+        cells.push(units(m.map.wall - outcome.stages.values().sum::<f64>()));
         cells.push(number(m.peak.unwrap_or(f64::NAN) / 1e6, 0));
+        cells.push(number(outcome.tau, 3));
+        cells.push(number(outcome.excess, 4));
+        cells.push(outcome.cones.to_string());
         table.push(cells);
     }
     table

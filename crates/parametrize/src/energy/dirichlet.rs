@@ -25,35 +25,3 @@ impl Energy for SymmetricDirichlet {
         }
     }
 }
-
-/// `(E / bound)^p / p` with E the symmetric Dirichlet energy: for growing p it looks at the worst
-/// triangles only.
-#[derive(Debug, Clone, Copy)]
-pub struct PowerOfDirichlet {
-    /// The exponent.
-    pub p: i32,
-    /// The largest energy of a triangle when the optimisation starts.
-    pub bound: f64,
-}
-
-impl Energy for PowerOfDirichlet {
-    #[inline]
-    fn value(&self, s1: f64, s2: f64) -> f64 {
-        (SymmetricDirichlet.value(s1, s2) / self.bound).powi(self.p) / f64::from(self.p)
-    }
-
-    #[inline]
-    fn jet(&self, s1: f64, s2: f64) -> Jet {
-        let inner = SymmetricDirichlet.jet(s1, s2);
-        let p = f64::from(self.p);
-        let q = inner.value / self.bound;
-        let second = q.powi(self.p - 2);
-        let (g1, g2) = (q * second / self.bound, (p - 1.0) * second / (self.bound * self.bound));
-        let [d1, d2] = inner.d;
-        Jet {
-            value: q * q * second / p,
-            d: [g1 * d1, g1 * d2],
-            dd: [g1 * inner.dd[0] + g2 * d1 * d1, g2 * d1 * d2, g1 * inner.dd[2] + g2 * d2 * d2],
-        }
-    }
-}

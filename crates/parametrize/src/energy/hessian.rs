@@ -82,7 +82,7 @@ fn half_angle(z: Complex64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Arap, Asap, Guarded, PowerOfDirichlet, SymmetricDirichlet, Untangling};
+    use crate::energy::{Arap, Asap, Guarded, SymmetricDirichlet, Untangling};
 
     fn at(j: [f64; 4]) -> Jacobian {
         Jacobian::from_rows([[j[0], j[1]], [j[2], j[3]]])
@@ -161,7 +161,6 @@ mod tests {
             check_derivatives(energy);
         }
         check(&SymmetricDirichlet);
-        check(&PowerOfDirichlet { p: 4, bound: 5.0 });
         check(&Untangling { eps: 0.3 });
         check(&Arap);
         check(&Asap { reward: 0.2 });

@@ -7,17 +7,15 @@ mod hessian;
 mod jacobian;
 mod triangle;
 mod untangling;
-mod window;
 
 pub use bounded_dilatation::BoundedDilatation;
-pub use dirichlet::{PowerOfDirichlet, SymmetricDirichlet};
+pub use dirichlet::SymmetricDirichlet;
 pub use distance::{Arap, Asap, Guarded};
 pub use hessian::ProjectedHessian;
 pub use jacobian::Jacobian;
 pub(crate) use triangle::{CHUNK, extremes, smallest_positive_root};
 pub use triangle::{Triangle, at_corner, is_positive, largest_step, sum_over, triangles};
 pub use untangling::Untangling;
-pub use window::Window;
 
 /// Value, gradient and Hessian of an energy at `(sigma_1, sigma_2)`.
 #[derive(Debug, Clone, Copy)]

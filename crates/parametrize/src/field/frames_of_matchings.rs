@@ -34,7 +34,7 @@ pub fn smooth_frames(
 }
 
 /// Frames turned by these angles, in quarters, against the isometric layout of a cut.
-pub(super) fn frames_of(
+pub(crate) fn frames_of(
     mesh: &TriMesh,
     metric: &Metric,
     unfolding: &Unfolding,

@@ -19,6 +19,7 @@ mod transfer;
 pub use convert::{directions_in_space, frames_from_directions, matchings_from_rows};
 pub use cross_field::{CrossField, FieldError};
 pub use extract::{ExtractError, extract, map_frames, map_indices};
+pub(crate) use frames_of_matchings::frames_of;
 pub use frames_of_matchings::{smooth_frames, spectral_frames};
 pub use homology::{DualLoop, Homology, NodeIndices};
 pub use lift::{LiftError, lift};

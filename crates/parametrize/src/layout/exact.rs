@@ -6,11 +6,11 @@ use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
 use super::space::seamless_space;
 use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
-use crate::energy::{Energy, Triangle, extremes, is_positive, triangles};
+use crate::energy::{Energy, Triangle, is_positive, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
 use crate::progress::{Cancelled, SolveError, Watch};
-use crate::quality::{Distortion, Measure, SingularValues};
+use crate::quality::{Figures, SingularValues};
 use crate::quarter::{turn, within};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
@@ -307,25 +307,18 @@ impl ExactLayout {
 
     /// Scales the unknowns to the best global scale of the symmetric Dirichlet energy.
     pub fn rescale(&self, y: &mut [f64]) {
-        let scale = Measure::SymmetricDirichlet.scale(&self.singular_values(y));
+        let scale = self.figures(y).scale;
         y.iter_mut().for_each(|x| *x *= scale);
     }
 
     /// Mean symmetric Dirichlet energy at its best scale, and tau.
-    pub fn distortion(&self, y: &[f64]) -> (f64, f64) {
-        let d = Distortion::new(&self.singular_values(y));
-        (d.symmetric_dirichlet, d.tau)
+    pub fn figures(&self, y: &[f64]) -> Figures {
+        Figures::of_layout(self.problem.triangles(), &self.expand(y))
     }
 
     /// Singular values of the triangles.
     pub fn singular_values(&self, y: &[f64]) -> SingularValues {
         SingularValues::of_layout(self.problem.triangles(), &self.expand(y))
-    }
-
-    /// The largest first and the smallest second singular value.
-    pub fn extreme_singular_values(&self, y: &[f64]) -> (f64, f64) {
-        let z = self.expand(y);
-        extremes(self.problem.triangles(), |_, t| t.jacobian(&z).singular_values())
     }
 
     /// Lists flips and wrong angles.

@@ -1,10 +1,11 @@
 //! The finish: the minimum tau for a small rise of the mean energy.
 
-use super::conic::{ConicError, ConicMinimum, ConicOptions, MaximalMeasure, Phase, minimize};
+use super::conic::trade;
 use super::exact::ExactLayout;
-use super::newton::NewtonOptions;
-use crate::energy::Window;
+use super::problem::LayoutProblem;
 use crate::progress::{Cancelled, Watch};
+use crate::quality::Figures;
+use num_complex::Complex64;
 use std::time::Duration;
 use web_time::Instant;
 
@@ -32,268 +33,131 @@ pub struct Polished {
     pub iterations: usize,
 }
 
-/// Range of bounds on tau: the first one tried, relative to the minimum tau, and the loosest, relative to tau of
-/// the relaxed layout, which needs no bound any more.
-const TIGHTEST: f64 = 1.003;
-const LOOSEST: f64 = 0.999;
-/// Bounds tried: secant steps seldom need more, and each costs up to a dozen factorisations.
-const BOUNDS: usize = 5;
-/// A rise of this part of the one allowed is near enough.
-const ENOUGH: f64 = 0.9;
-/// The part of the allowed rise that is aimed at, in the middle of what is near enough.
-const TARGET: f64 = 0.5 * (1.0 + ENOUGH);
-/// A rise counts as this part of the one allowed at least, so that it has a logarithm.
-const SMALLEST_RISE: f64 = 1e-3;
-/// The rise falls about as this power of the bound; only the second bound tried rests on it.
-const DECAY: f64 = 15.0;
-/// Powers that a secant may have: others come from rises that hardly differ.
-const FLATTEST: f64 = 3.0;
-const STEEPEST: f64 = 100.0;
-/// Barrier weight, in units of the energy: a tenth of usual excesses over 4, so that few Newton steps do.
-const WEIGHT: f64 = 1e-2;
-/// To a fraction of the usual rise: a window is one of several that are tried.
-const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 12, tolerance: 1e-5 };
-/// Within this factor of the minimum tau no more energy is spent.
-const NEAR_ENOUGH: f64 = 1.01;
+/// Weight of the energy at first, against tau squared.
+const FIRST_WEIGHT: f64 = 3.0;
+/// Iterations before the weight changes: those in which the run leaves its start.
+const PATIENCE: usize = 2;
+/// The weight is multiplied by the rise as a part of the one allowed, but by no more than these factors at a time.
+const CHANGE: (f64, f64) = (0.4, 2.5);
+/// A rise counts as this part of the one allowed at least.
+const SMALLEST_RISE: f64 = 0.05;
 /// Halvings of the line search that spends the rest: to a thousandth of the line.
 const HALVINGS: usize = 10;
-/// Parts of the way to a layout of low energy where a minimisation may start.
-const STARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.0];
-/// How near the bounds of a window a start may lie, as a part of its logarithmic width.
-const ROOM: f64 = 0.02;
 
-/// Lowers tau while the mean symmetric Dirichlet energy stays within `1 + max_energy_rise` times its minimum.
+/// Lowers tau while the mean symmetric Dirichlet energy stays within `1 + max_energy_rise` times that of a layout of
+/// minimum energy, `relaxed`, which is free of flips.
 ///
-/// Returned is the layout of smallest tau among all those found whose energy is within this bound of the smallest
-/// energy found: `relaxed`, a layout of minimum energy, `start`, one of lower tau that may have more energy than
-/// is allowed, and those of the search. So the bound always holds, and nothing that a smaller rise would
-/// have kept of `relaxed` and `start` is lost with a larger one.
-///
-/// The search finds the minimum tau by a fused run of conic programs (9); then it minimises energies with all
-/// singular values kept in windows of growing width, until the rise is what is allowed. Both layouts must be
-/// free of flips.
+/// A fused conic run for tau has the energy as a term of its objective, to second order, whose weight is adapted until
+/// the rise measured is the one allowed. Of the layouts that it passes through, the one of smallest tau within the
+/// bound goes on towards the best one beyond, as far as the bound allows.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn polish(
     layout: &mut ExactLayout,
     relaxed: &[f64],
-    start: &[f64],
     options: &PolishOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Polished, Cancelled> {
-    let rise = options.max_energy_rise;
-    let mut front = Front::new(Candidate::new(layout, relaxed));
-    front.add(Candidate::new(layout, start));
-    if rise <= 0.0 {
-        return Ok(Polished { y: front.best(rise).y.clone(), iterations: 0 });
+    let start = Candidate::new(layout.problem(), relaxed, &layout.expand(relaxed));
+    let mut search = Search::new(start, options.max_energy_rise);
+    if options.max_energy_rise <= 0.0 {
+        return Ok(Polished { y: search.within.y, iterations: 0 });
     }
     let deadline = options.time_limit.and_then(|limit| Instant::now().checked_add(limit));
-    let tightest = watch.limited(deadline, |watch| minimum_tau(layout, start, watch))?;
-    let Some(tightest) = tightest.flatten() else {
-        return Ok(Polished { y: front.best(rise).y.clone(), iterations: 0 });
-    };
-    let mut search = Search::new(layout, relaxed, start, tightest, front, rise);
-    if watch.limited(deadline, |watch| search.run(watch))?.is_some() {
-        search.spend_the_rest();
-    }
-    let Search { front, iterations, .. } = search;
-    Ok(Polished { y: front.best(rise).y.clone(), iterations })
+    let mut minimum = relaxed.to_vec();
+    layout.rescale(&mut minimum);
+    let iterations = watch.limited(deadline, |watch| {
+        let mut weigh =
+            |problem: &LayoutProblem, y: &[f64], z: &[Complex64]| search.weigh(problem, y, z);
+        trade(layout.problem_mut(), minimum, &mut weigh, watch)
+    })?;
+    search.spend_the_rest(layout);
+    Ok(Polished { y: search.within.y, iterations: iterations.unwrap_or(0) })
 }
 
-/// A layout of low tau, whatever its energy; none if the programs fail.
-fn minimum_tau(
-    layout: &mut ExactLayout,
-    start: &[f64],
-    watch: &mut Watch<'_, '_>,
-) -> Result<Option<ConicMinimum>, Cancelled> {
-    let phases = [Phase::Fused(MaximalMeasure::Tau)];
-    let options = ConicOptions::default();
-    match minimize(layout.problem_mut(), start.to_vec(), &phases, &options, watch) {
-        Ok(minimum) => Ok(Some(minimum)),
-        Err(ConicError::Cancelled(cancelled)) => Err(cancelled),
-        Err(_) => Ok(None),
-    }
-}
-
-/// A layout with what it is judged by.
+/// A layout at its best scale with what it is judged by.
 struct Candidate {
     y: Vec<f64>,
+    scale: f64,
     energy: f64,
     tau: f64,
 }
 
 impl Candidate {
-    fn new(layout: &ExactLayout, y: &[f64]) -> Self {
-        let (energy, tau) = layout.distortion(y);
-        Self { y: y.to_vec(), energy, tau }
+    fn new(problem: &LayoutProblem, y: &[f64], z: &[Complex64]) -> Self {
+        let Figures { scale, symmetric_dirichlet, tau } =
+            Figures::of_layout(problem.triangles(), z);
+        let y = y.iter().map(|y| scale * y).collect();
+        Self { y, scale, energy: symmetric_dirichlet, tau }
     }
 }
 
-/// The layouts found.
-struct Front {
-    /// The one of smallest energy.
-    minimum: Candidate,
-    others: Vec<Candidate>,
-}
-
-impl Front {
-    fn new(first: Candidate) -> Self {
-        Self { minimum: first, others: Vec::new() }
-    }
-
-    fn add(&mut self, candidate: Candidate) {
-        let other = match candidate.energy < self.minimum.energy {
-            true => std::mem::replace(&mut self.minimum, candidate),
-            false => candidate,
-        };
-        self.others.push(other);
-    }
-
-    /// The one of smallest tau among those whose energy is at most `1 + rise` times the smallest.
-    fn best(&self, rise: f64) -> &Candidate {
-        let most = (1.0 + rise) * self.minimum.energy;
-        let within = self.others.iter().filter(|c| c.energy <= most);
-        within.fold(&self.minimum, |best, c| if c.tau < best.tau { c } else { best })
-    }
-}
-
-/// A search for the bound on tau whose energy is the one allowed.
-struct Search<'a> {
-    layout: &'a mut ExactLayout,
-    relaxed: &'a [f64],
-    start: &'a [f64],
-    /// Energy of the relaxed layout, and its rise that is allowed, absolute and relative.
-    energy: f64,
+/// A search for the smallest tau within a bound on the energy.
+struct Search {
+    /// The smallest energy, and the rise allowed.
+    least: f64,
     allowed: f64,
-    rise: f64,
-    /// Extreme singular values of the layout of minimum tau at its best scale, and its tau.
-    extremes: (f64, f64),
-    tau: f64,
-    /// The layout of minimum tau, and the last one found.
-    tightest: Vec<f64>,
-    last: Vec<f64>,
-    front: Front,
-    iterations: usize,
+    weight: f64,
+    /// Layouts seen.
+    count: usize,
+    /// Those of smallest tau within the bound and beyond.
+    within: Candidate,
+    beyond: Option<Candidate>,
 }
 
-impl<'a> Search<'a> {
-    fn new(
-        layout: &'a mut ExactLayout,
-        relaxed: &'a [f64],
-        start: &'a [f64],
-        tightest: ConicMinimum,
-        front: Front,
-        rise: f64,
-    ) -> Self {
-        let ConicMinimum { y: mut tightest, iterations, .. } = tightest;
-        layout.rescale(&mut tightest);
-        let (energy, _) = layout.distortion(relaxed);
+impl Search {
+    fn new(start: Candidate, max_energy_rise: f64) -> Self {
         Self {
-            energy,
-            allowed: energy * rise,
-            rise,
-            extremes: layout.extreme_singular_values(&tightest),
-            tau: layout.distortion(&tightest).1,
-            last: tightest.clone(),
-            tightest,
-            layout,
-            relaxed,
-            start,
-            front,
-            iterations,
+            least: start.energy,
+            allowed: max_energy_rise * start.energy,
+            weight: FIRST_WEIGHT,
+            count: 0,
+            within: start,
+            beyond: None,
         }
     }
 
-    /// Secant steps in the logarithms of bound and rise.
-    fn run(&mut self, watch: &mut Watch<'_, '_>) -> Result<(), Cancelled> {
-        let loosest = (LOOSEST * self.layout.distortion(self.relaxed).1 / self.tau).ln();
-        let mut width = TIGHTEST.ln();
-        let mut previous: Option<(f64, f64)> = None;
-        for _ in 0..BOUNDS {
-            let rise = self.minimize_within(width.exp(), watch)?;
-            if width >= loosest || (ENOUGH * self.allowed..=self.allowed).contains(&rise) {
-                break;
-            }
-            if previous.is_none() && rise <= self.allowed {
-                break;
-            }
-            let rise = rise.max(SMALLEST_RISE * self.allowed);
-            let missing = (rise / (TARGET * self.allowed)).ln();
-            let slope = match previous {
-                Some((w, log_rise)) if width != w => {
-                    ((log_rise - rise.ln()) / (width - w)).clamp(FLATTEST, STEEPEST)
-                }
-                _ => DECAY,
-            };
-            previous = Some((width, rise.ln()));
-            width = (width + missing / slope).clamp(TIGHTEST.ln(), loosest.max(TIGHTEST.ln()));
+    /// Judges a layout; returns its best scale, and the weight of the energy from there on.
+    fn weigh(&mut self, problem: &LayoutProblem, y: &[f64], z: &[Complex64]) -> (f64, f64) {
+        let found = Candidate::new(problem, y, z);
+        let scale = found.scale;
+        let rise = (found.energy - self.least) / self.allowed;
+        if self.count >= PATIENCE {
+            let factor = rise.max(SMALLEST_RISE);
+            self.weight *= factor.clamp(CHANGE.0, CHANGE.1);
         }
-        Ok(())
+        self.count += 1;
+        self.take(found);
+        (scale, self.weight)
     }
 
-    /// Minimises the energy with tau below `factor` times the minimum; returns the rise of the energy.
-    fn minimize_within(
-        &mut self,
-        factor: f64,
-        watch: &mut Watch<'_, '_>,
-    ) -> Result<f64, Cancelled> {
-        let (highest, lowest) = (self.extremes.0 * factor, self.extremes.1 / factor);
-        let window = Window { lowest, highest, weight: WEIGHT };
-        let start = self.start_within(&window);
-        let solution = self.layout.minimize(start, &window, &SETTLE, watch)?;
-        self.iterations += solution.iterations;
-        let rise = self.consider(&solution.y);
-        self.last = solution.y;
-        Ok(rise)
+    /// Keeps a layout if it is the best of its kind; returns whether it is within the bound.
+    fn take(&mut self, found: Candidate) -> bool {
+        let is_within = found.energy - self.least <= self.allowed;
+        if is_within {
+            if found.tau < self.within.tau {
+                self.within = found;
+            }
+        } else if self.beyond.as_ref().is_none_or(|beyond| found.tau < beyond.tau) {
+            self.beyond = Some(found);
+        }
+        is_within
     }
 
-    /// Takes a layout to those found; returns the rise of its energy.
-    fn consider(&mut self, y: &[f64]) -> f64 {
-        let candidate = Candidate::new(self.layout, y);
-        let rise = candidate.energy - self.energy;
-        self.front.add(candidate);
-        rise
-    }
-
-    /// Where windows have left tau well above the minimum: goes straight towards that, as far as the energy
-    /// allows.
-    fn spend_the_rest(&mut self) {
-        let best = self.front.best(self.rise);
-        if best.tau <= NEAR_ENOUGH * self.tau {
+    /// Goes from the best layout within the bound straight to the one beyond, as far as the bound allows.
+    fn spend_the_rest(&mut self, layout: &ExactLayout) {
+        let Some(beyond) = self.beyond.take().filter(|beyond| beyond.tau < self.within.tau) else {
             return;
-        }
-        let from = best.y.clone();
+        };
+        let from = self.within.y.clone();
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let part = 0.5 * (low + high);
-            let between = from.iter().zip(&self.tightest).map(|(y, t)| y + part * (t - y));
+            let between = from.iter().zip(&beyond.y).map(|(a, b)| a + part * (b - a));
             let y: Vec<f64> = between.collect();
-            if self.consider(&y) <= self.allowed { low = part } else { high = part }
+            let found = Candidate::new(layout.problem(), &y, &layout.expand(&y));
+            if self.take(found) { low = part } else { high = part }
         }
-    }
-
-    /// A point in the window to start from: of those far along straight lines from layouts of low tau to layouts
-    /// of low energy, the one of smallest energy.
-    fn start_within(&self, window: &Window) -> Vec<f64> {
-        let inside = |y: &[f64], margin: f64| {
-            let (largest, smallest) = self.layout.extreme_singular_values(y);
-            largest * margin < window.highest && smallest > window.lowest * margin
-        };
-        let margin = (window.highest / window.lowest).powf(ROOM);
-        let mut found = (f64::INFINITY, self.tightest.clone());
-        for from in [&self.tightest, &self.last] {
-            for to in [self.relaxed, self.start] {
-                let between = |part: f64| -> Vec<f64> {
-                    from.iter().zip(to).map(|(y, r)| y + part * (r - y)).collect()
-                };
-                let farthest = STARTS.into_iter().map(between).find(|y| inside(y, margin));
-                let energy = |y: &Vec<f64>| self.layout.distortion(y).0;
-                if let Some(y) = farthest.filter(|y| energy(y) < found.0) {
-                    found = (energy(&y), y);
-                }
-            }
-        }
-        found.1
     }
 }

@@ -202,6 +202,11 @@ impl LayoutProblem {
         gradient
     }
 
+    /// Adds a multiple of other values of the pattern to the assembled matrix.
+    pub(crate) fn add_to_matrix(&mut self, values: &[f64], factor: f64) {
+        self.matrix.iter_mut().zip(values).for_each(|(sum, x)| *sum += factor * x);
+    }
+
     /// Assembles the Dirichlet form `sum of area |J|^2 / 2` of each coordinate.
     pub fn assemble_dirichlet(&mut self) {
         self.fill_triangles(|t, _, block| {

@@ -1,19 +1,75 @@
 //! The stage that closes the seams.
 
+use super::clean_up::Cleaned;
 use super::domain::Domain;
+use super::relaxed::{RelaxedLayout, relax};
 use super::round::round;
 use super::start::repaired;
 use super::{MapOptions, MethodError, Start};
 use crate::layout::ladder::{self, LayoutEffort, SeamlessLayout};
-use crate::progress::Watch;
+use crate::progress::{Watch, unless_cancelled};
 use crate::rounding::Rounding;
+
+/// The relaxed layout of cleaned matchings, if it is as good as their estimate; else the better one of it and that of the
+/// rounded matchings.
+///
+/// # Errors
+/// [`MethodError`].
+pub(super) fn lay_out<'m>(
+    domain: Domain<'m>,
+    rounding: Rounding,
+    cleaned: Option<&Cleaned>,
+    start: &Start,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(Domain<'m>, Rounding, RelaxedLayout), MethodError> {
+    let Some(cleaned) = cleaned else {
+        let (domain, rounding, layout) = lay_out_rounded(domain, rounding, start, options, watch)?;
+        return Ok((domain, rounding, relax(layout, watch)?));
+    };
+    let without = match lay_out_cleaned(&domain, cleaned, watch)? {
+        Some(layout) if cleaned.is_met_by(&layout) => return Ok((domain, rounding, layout)),
+        other => other,
+    };
+    let all = domain.features();
+    let with = lay_out(domain.clone(), rounding.clone(), None, start, options, watch);
+    match (without, unless_cancelled(with)?) {
+        // Neither is worth a feature.
+        (Some(without), Ok((fewer, _, with)))
+            if fewer.features() != all || cleaned.is_worth(&without, &with) =>
+        {
+            Ok((domain, rounding, without))
+        }
+        (Some(without), Err(_)) => Ok((domain, rounding, without)),
+        (_, with) => with,
+    }
+}
+
+/// The relaxed layout of cleaned matchings, if there is one.
+///
+/// # Errors
+/// [`MethodError`].
+fn lay_out_cleaned(
+    domain: &Domain<'_>,
+    cleaned: &Cleaned,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Option<RelaxedLayout>, MethodError> {
+    // Between features the last rung seldom helps, and costs most.
+    let effort = if domain.any_aligned() { LayoutEffort::Brief } else { LayoutEffort::Thorough };
+    let (sectors, metric) = (&domain.sectors, &domain.metric);
+    let layout = ladder::lay_out(sectors, metric, &cleaned.start, effort, watch);
+    match unless_cancelled(layout)? {
+        Ok(Ok(layout)) => Ok(Some(relax(layout, watch)?)),
+        Ok(Err(_)) | Err(_) => Ok(None),
+    }
+}
 
 /// The layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
 /// the others stay.
 ///
 /// # Errors
 /// [`MethodError`].
-pub(super) fn lay_out<'m>(
+fn lay_out_rounded<'m>(
     domain: Domain<'m>,
     rounding: Rounding,
     start: &Start,

@@ -8,7 +8,6 @@ use crate::consistency::{
 use crate::cut::{FramedCut, Unfolding, frames_of_angles};
 use crate::field::{
     ConePrescription, CrossField, FieldError, check_angle, impose, matched_cut, smooth_field,
-    smooth_frames,
 };
 use crate::layout::exact::Defects;
 use crate::map::{Violation, Violations};
@@ -127,10 +126,9 @@ fn with_cones(
     if shifts == 0 {
         return Ok(rounding);
     }
-    let matched = fix_holonomy(sectors, metric, matched)?;
-    let frames = smooth_frames(domain.mesh(), metric, &matched)?;
+    let start = fix_holonomy(sectors, metric, matched)?;
     let stats = RoundingStats { shifted_seams: shifts, ..rounding.stats };
-    Ok(Rounding { start: FramedCut { matched, frames }, stats })
+    Ok(Rounding { start, stats })
 }
 
 /// The matchings of a map, made consistent. Its flipped triangles have angles far from any possible

@@ -1,6 +1,7 @@
 //! Figures of merit of a map.
 
 mod distortion;
+mod figures;
 mod frames;
 mod measure;
 mod scale;
@@ -8,6 +9,7 @@ mod singular;
 mod summary;
 
 pub use distortion::{Distortion, distortion};
+pub use figures::Figures;
 pub use frames::{distance_to_frames, frames};
 pub use measure::{Aggregate, Measure};
 pub use singular::SingularValues;

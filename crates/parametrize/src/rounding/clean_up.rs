@@ -1,14 +1,15 @@
 //! Fewer and better placed cones, judged by the surrogate.
 
+use super::reach::{Ball, BallSearch};
 use super::surrogate::{Response, Surrogate};
-use crate::cut::FramedCut;
-use crate::features::{Road, Sectors};
+use crate::cut::MatchedCut;
+use crate::features::Sectors;
 use crate::ordered::Ordered;
 use crate::progress::{Cancelled, SolveError, Watch};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{HalfedgeData, Metric, Vertex, VertexData};
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::FRAC_PI_2;
 
 /// What clean-up did.
@@ -16,8 +17,10 @@ use std::f64::consts::FRAC_PI_2;
 pub struct CleanUpStats {
     /// Pairs of cones cancelled or merged.
     pub cancelled: usize,
-    /// Moves of a cone to a neighbouring vertex.
+    /// Moves of a cone to another vertex.
     pub moved: usize,
+    /// The surrogate energy at the end.
+    pub energy: f64,
     /// Interior cones fewer, as [`CleanUpOptions::count`] counts them.
     pub saved: i32,
 }
@@ -47,64 +50,77 @@ pub struct CleanUpOptions {
     pub price: f64,
     /// How cones are counted.
     pub count: ConeCount,
-    /// The log scale at a cone may reach this, or what it was, but not more.
-    pub largest_scale: f64,
     /// An index may differ from the curvature by less than this many quarters.
     pub largest_deviation: f64,
 }
 
-/// Sweeps of cancellations and moves; the last ones hardly find anything.
-const SWEEPS: usize = 6;
-/// Opposite cones tried for each positive one: a farther one costs more, whatever lies between.
-const PARTNERS: usize = 4;
-/// Vertices searched for partners, which bounds the work where there are few.
-const SEARCH_LIMIT: usize = 4000;
-/// Passes of moves in one sweep: cones walk edge by edge, and cancelling them ends the walk.
-const MOVES: usize = 3;
+/// Rounds in which every cone may go once; the last ones hardly find anything.
+const ROUNDS: usize = 12;
+/// A cone reaches the area that this many have on average.
+const REACH: f64 = 4.0;
+/// Most cones that go at the same time, and the part of its profit that each must keep when those before it have gone.
+const TOGETHER: usize = 4;
+const STANDING: f64 = 0.5;
 /// Mean symmetric Dirichlet energy that a move has to gain: a thousandth of the price of a cone, or cones walk to and
 /// fro.
 const MINIMUM_GAIN: f64 = 1e-6;
 
-/// Cancels pairs of cones and moves cones along edges while the surrogate energy grows by less than
-/// the price per cone removed; the matchings change along the way.
+/// Cancels pairs of cones and moves cones while the surrogate energy grows by less than the price per cone removed; the
+/// matchings change along the way.
+///
+/// The surrogate tells exactly what a unit of index that goes from a cone to any sector around it changes. In every round
+/// the cones go, the most profitable first, each where it gains most: onto an opposite cone, or to an empty sector. In
+/// the first round cones only cancel.
 ///
 /// # Errors
 /// [`SolveError`].
 pub fn clean_up(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    start: &FramedCut,
+    matched: &MatchedCut,
     options: &CleanUpOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(FramedCut, CleanUpStats), SolveError> {
-    let index = start.matched.sector_indices(sectors, metric);
+) -> Result<(MatchedCut, CleanUpStats), SolveError> {
+    let index = matched.sector_indices(sectors, metric);
     let mut work = CleanUp::new(sectors, metric, index, *options)?;
     let before = work.count();
     let mut stats = CleanUpStats::default();
-    for sweep in 0..SWEEPS {
-        watch.tick(sweep as f64 / SWEEPS as f64)?;
-        let (cancelled, moved) = (work.cancel(watch)?, work.move_cones(watch)?);
+    for round in 0..ROUNDS {
+        watch.tick(round as f64 / ROUNDS as f64)?;
+        let (cancelled, moved) = work.round(round == 0, watch)?;
         stats.cancelled += cancelled;
         stats.moved += moved;
-        if cancelled + moved == 0 {
+        if round > 0 && cancelled + moved == 0 {
             break;
         }
     }
     stats.saved = before - work.count();
-    Ok((start.turned(sectors, &work.transport), stats))
+    stats.energy = work.surrogate.energy();
+    Ok((matched.turned(sectors, &work.transport).0, stats))
 }
 
 struct CleanUp<'a> {
     sectors: &'a Sectors<'a>,
     metric: &'a Metric,
     surrogate: Surrogate<'a>,
-    index: VertexData<i32>,
-    curvature: VertexData<f64>,
+    /// Index beyond the preferred one: what makes a cone or a false corner. Free sectors have none.
+    excess: VertexData<i32>,
+    /// The least and the largest excess that a sector may have; free ones none.
+    range: VertexData<(i32, i32)>,
     options: CleanUpOptions,
     /// Net units sent across each edge, negated on twins.
     transport: HalfedgeData<i32>,
-    /// Responses found so far, for ascending pairs.
-    responses: HashMap<(Vertex, Vertex), Response>,
+    search: BallSearch<'a>,
+    /// Where each cone may go.
+    reach: HashMap<Vertex, Reach>,
+}
+
+/// A unit of the cone at `s` goes to `b`, which has this place in its reach.
+struct Move {
+    s: Vertex,
+    b: Vertex,
+    place: usize,
+    profit: f64,
 }
 
 impl<'a> CleanUp<'a> {
@@ -114,218 +130,173 @@ impl<'a> CleanUp<'a> {
         index: VertexData<i32>,
         options: CleanUpOptions,
     ) -> Result<Self, NotPositiveDefinite> {
-        Ok(Self {
+        let slit = sectors.slit();
+        let curvature = metric.curvature(slit);
+        let range = |s: Vertex| {
+            if sectors.is_free(s) {
+                return (1, 0);
+            }
+            let (low, high) = sectors.bounds(s);
+            let (curvature, most) = (curvature[s] / FRAC_PI_2, options.largest_deviation);
+            let low = low.max((curvature - most).floor() as i32 + 1);
+            let high = high.min((curvature + most).ceil() as i32 - 1);
+            (low - sectors.preferred(s), high - sectors.preferred(s))
+        };
+        let excess = index.enumerate().map(|(s, index)| index - sectors.preferred(s));
+        let excess: VertexData<i32> = excess.collect();
+        let cones = excess.iter().filter(|&&excess| excess != 0).count();
+        let part = REACH / cones.max(1) as f64;
+        let mut work = Self {
             surrogate: Surrogate::new(sectors, metric, &index)?,
-            curvature: metric.curvature(sectors.slit()).iter().map(|k| k / FRAC_PI_2).collect(),
+            range: slit.vertices().map(range).collect(),
             transport: HalfedgeData::filled(sectors.slit().n_halfedges(), 0),
-            responses: HashMap::new(),
+            search: BallSearch::new(sectors, metric, part),
+            reach: HashMap::new(),
             sectors,
             metric,
-            index,
+            excess,
             options,
-        })
+        };
+        let cones = work.cones();
+        work.look_around(&cones);
+        Ok(work)
+    }
+
+    /// Finds where some cones may go, and what they change.
+    fn look_around(&mut self, cones: &[Vertex]) {
+        let responses = self.surrogate.responses(cones);
+        for (&s, response) in cones.iter().zip(responses) {
+            let ball = self.search.around(s);
+            self.reach.insert(s, Reach { ball, response });
+        }
     }
 
     fn count(&self) -> i32 {
-        self.cones().into_iter().map(|s| self.options.count.of(self.excess(s))).sum()
-    }
-
-    /// Index beyond the preferred one: what makes a cone or a false corner. Free sectors have none.
-    fn excess(&self, s: Vertex) -> i32 {
-        self.index[s] - self.sectors.preferred(s)
+        self.excess.iter().map(|&excess| self.options.count.of(excess)).sum()
     }
 
     /// Sectors with another index than the preferred one.
     fn cones(&self) -> Vec<Vertex> {
-        self.sectors.slit().vertices().filter(|&s| self.excess(s) != 0).collect()
+        self.sectors.slit().vertices().filter(|&s| self.excess[s] != 0).collect()
     }
 
-    fn allows(&self, v: Vertex, index: i32) -> bool {
-        let (low, high) = self.sectors.bounds(v);
-        let deviation = (f64::from(index) - self.curvature[v]).abs();
-        (low..=high).contains(&index) && deviation < self.options.largest_deviation
+    fn allows(&self, s: Vertex, excess: i32) -> bool {
+        let (low, high) = self.range[s];
+        (low..=high).contains(&excess)
     }
 
-    /// Cones fewer after sending a unit from one vertex to another.
-    fn removed(&self, from: Vertex, to: Vertex) -> i32 {
+    /// Most that sending a unit from a cone at `s` to `b` may add to the energy.
+    fn budget(&self, s: Vertex, b: Vertex) -> f64 {
         let count = |k: i32| self.options.count.of(k);
-        let (from, to) = (self.excess(from), self.excess(to));
-        count(from) + count(to) - count(from - 1) - count(to + 1)
+        let (at_s, at_b) = (self.excess[s], self.excess[b]);
+        let sign = at_s.signum();
+        let removed = count(at_s) + count(at_b) - count(at_s - sign) - count(at_b + sign);
+        self.options.price * f64::from(removed)
     }
 
-    /// Most that sending a unit may add to the energy.
-    fn budget(&self, from: Vertex, to: Vertex) -> f64 {
-        self.options.price * f64::from(self.removed(from, to))
+    /// What is gained when a unit of the cone at `s` goes to `b`, beyond `least`; none if it may not.
+    fn profit(&self, s: Vertex, b: Vertex, response: &Response, least: f64) -> Option<f64> {
+        let sign = self.excess[s].signum();
+        let profit = self.budget(s, b) - self.surrogate.change(sign, [s, b], response);
+        let may_go = profit > least
+            && sign != 0
+            && self.excess[b] * sign <= 0
+            && self.allows(s, self.excess[s] - sign)
+            && self.allows(b, self.excess[b] + sign);
+        may_go.then_some(profit)
     }
 
-    /// Finds the responses of the pairs whose first-order term leaves a chance.
-    fn prepare(&mut self, pairs: &[(Vertex, Vertex)]) {
-        let mut missing: Vec<(Vertex, Vertex)> = pairs
-            .iter()
-            .copied()
-            .filter(|&(a, b)| self.surrogate.linear(a, b) < self.budget(a, b))
-            .map(|(a, b)| (a.min(b), a.max(b)))
-            .filter(|pair| !self.responses.contains_key(pair))
-            .collect();
-        missing.sort_unstable();
-        missing.dedup();
-        let values = self.surrogate.responses(&missing);
-        self.responses.extend(missing.into_iter().zip(values));
-    }
-
-    /// Change of the energy; infinity for a pair that had no chance when it was prepared, or that would
-    /// stretch the surface at its ends too much.
-    fn change(&self, from: Vertex, to: Vertex) -> f64 {
-        let Some(response) = self.responses.get(&(from.min(to), from.max(to))) else {
-            return f64::INFINITY;
-        };
-        let [low, high] = response.scale;
-        let (at_from, at_to) = if from < to { (low, high) } else { (-high, -low) };
-        let now = [self.surrogate.scale(from), self.surrogate.scale(to)];
-        let largest = |u: [f64; 2]| u[0].abs().max(u[1].abs());
-        if largest([now[0] + at_from, now[1] + at_to])
-            > largest(now).max(self.options.largest_scale)
-        {
-            return f64::INFINITY;
-        }
-        self.surrogate.linear(from, to) + response.quadratic
-    }
-
-    fn send(&mut self, from: Vertex, to: Vertex, path: &[Road]) {
-        for road in path {
-            self.transport[road.halfedge] += road.sign;
-            if let Some(t) = self.sectors.slit().twin(road.halfedge) {
-                self.transport[t] -= road.sign;
-            }
-        }
-        self.index[from] -= 1;
-        self.index[to] += 1;
-        self.surrogate.transport(from, to);
-    }
-
-    /// One sweep of cancellations, best first.
-    fn cancel(&mut self, watch: &mut Watch<'_, '_>) -> Result<usize, Cancelled> {
-        let mut pairs = BTreeMap::new();
-        for from in self.cones().into_iter().filter(|&v| self.excess(v) > 0) {
-            for (to, path) in self.near_negative(from) {
-                pairs.insert((from, to), path);
-            }
-        }
-        let keys: Vec<_> = pairs.keys().copied().collect();
-        self.prepare(&keys);
-        let mut order: Vec<(f64, Vertex, Vertex)> =
-            keys.into_iter().map(|(a, b)| (self.change(a, b), a, b)).collect();
-        order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let mut count = 0;
-        for (_, from, to) in order {
-            watch.pulse()?;
-            let fits =
-                self.allows(from, self.index[from] - 1) && self.allows(to, self.index[to] + 1);
-            let opposite = self.excess(from) > 0 && self.excess(to) < 0;
-            if fits && opposite && self.change(from, to) < self.budget(from, to) {
-                self.send(from, to, &pairs[&(from, to)]);
-                count += 1;
-            }
-        }
-        Ok(count)
-    }
-
-    /// Negative cones near a positive one, with shortest paths to them.
-    fn near_negative(&self, start: Vertex) -> Vec<(Vertex, Vec<Road>)> {
-        // Distance, and the road taken from which sector.
-        type Reached = HashMap<Vertex, (f64, Option<(Vertex, Road)>)>;
-        let mut reached = Reached::from([(start, (0.0, None))]);
-        let mut queue = BinaryHeap::from([Reverse((Ordered(0.0), start))]);
-        let (mut found, mut visited) = (Vec::new(), 0);
-        let trace = |reached: &Reached, mut s: Vertex| {
-            let mut path = Vec::new();
-            while let Some((from, road)) = reached[&s].1 {
-                path.push(road);
-                s = from;
-            }
-            path
-        };
-        while let Some(Reverse((Ordered(d), s))) = queue.pop() {
-            if d > reached[&s].0 {
+    /// The best move of a cone.
+    fn best(&self, s: Vertex, cancels_only: bool) -> Option<Move> {
+        let sign = self.excess[s].signum();
+        let Reach { ball, response } = self.reach.get(&s)?;
+        let mut best = None;
+        let mut least = MINIMUM_GAIN;
+        for (place, &b) in ball.sectors.iter().enumerate().skip(1) {
+            if cancels_only && self.excess[b] * sign >= 0 {
                 continue;
             }
-            visited += 1;
-            if self.excess(s) < 0 {
-                found.push((s, trace(&reached, s)));
+            if let Some(profit) = self.profit(s, b, response, least) {
+                least = profit;
+                best = Some(Move { s, b, place, profit });
             }
-            if found.len() == PARTNERS || visited > SEARCH_LIMIT {
-                break;
+        }
+        best
+    }
+
+    /// Sends a unit of a cone along a way; returns whether it meets another.
+    fn send(&mut self, Move { s, b, place, .. }: Move) -> bool {
+        let sign = self.excess[s].signum();
+        let meets = self.excess[b] != 0;
+        for road in self.reach[&s].ball.way_back(place) {
+            self.transport[road.halfedge] += sign * road.sign;
+            if let Some(t) = self.sectors.slit().twin(road.halfedge) {
+                self.transport[t] -= sign * road.sign;
             }
-            for road in self.sectors.roads(s) {
-                let reach = d + self.metric.length[road.halfedge];
-                if reached.get(&road.to).is_none_or(|r| reach < r.0) {
-                    reached.insert(road.to, (reach, Some((s, road))));
-                    queue.push(Reverse((Ordered(reach), road.to)));
+        }
+        self.excess[s] -= sign;
+        self.excess[b] += sign;
+        let [from, to] = if sign > 0 { [s, b] } else { [b, s] };
+        self.surrogate.transport(&self.reach[&from].response, &self.reach[&to].response);
+        meets
+    }
+
+    /// Every cone goes where it gains most, the best first, as long as any gains; how many cancel, and how many move.
+    fn round(
+        &mut self,
+        cancels_only: bool,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<(usize, usize), Cancelled> {
+        let (mut cancelled, mut moved) = (0, 0);
+        let mut queue: BinaryHeap<(Ordered, Reverse<Vertex>, usize)> = BinaryHeap::new();
+        for s in self.cones() {
+            let best = self.best(s, cancels_only);
+            queue.extend(best.map(|best| (Ordered(best.profit), Reverse(s), 0)));
+        }
+        while !queue.is_empty() {
+            watch.pulse()?;
+            let sent = cancelled + moved;
+            let mut moves: Vec<Move> = Vec::new();
+            while moves.len() < TOGETHER {
+                let Some((_, Reverse(s), judged)) = queue.pop() else { break };
+                // What the others did since it was judged counts too.
+                let Some(best) = self.best(s, cancels_only) else { continue };
+                let next = queue.peek().map_or(0.0, |(Ordered(profit), ..)| *profit);
+                if judged < sent && best.profit < next {
+                    queue.push((Ordered(best.profit), Reverse(s), sent));
+                } else {
+                    moves.push(best);
+                }
+            }
+            // The responses where they end, solved for together.
+            let mut ends: Vec<Vertex> = moves.iter().map(|to| to.b).collect();
+            ends.sort_unstable();
+            ends.dedup();
+            ends.retain(|b| !self.reach.contains_key(b));
+            self.look_around(&ends);
+            for to in moves {
+                // What those before it did may have left little of its profit.
+                let response = &self.reach[&to.s].response;
+                let now = self.profit(to.s, to.b, response, STANDING * to.profit);
+                if now.is_none() {
+                    queue.push((Ordered(STANDING * to.profit), Reverse(to.s), 0));
+                } else if self.send(to) {
+                    cancelled += 1;
+                } else {
+                    moved += 1;
                 }
             }
         }
-        found
+        let excess = &self.excess;
+        self.reach.retain(|&s, _| excess[s] != 0);
+        let index = self.excess.enumerate().map(|(s, excess)| excess + self.sectors.preferred(s));
+        self.surrogate.refresh(self.metric, &index.collect());
+        Ok((cancelled, moved))
     }
+}
 
-    /// A few passes in which every cone may move to a neighbour once.
-    fn move_cones(&mut self, watch: &mut Watch<'_, '_>) -> Result<usize, Cancelled> {
-        let mut total = 0;
-        for _ in 0..MOVES {
-            // Most steps stay the best ones until their turn comes: find their responses together.
-            let steps: Vec<_> = self.cones().into_iter().flat_map(|v| self.steps(v)).collect();
-            self.prepare(&steps.iter().map(|&(a, b, _)| (a, b)).collect::<Vec<_>>());
-            let mut count = 0;
-            for v in self.cones() {
-                watch.pulse()?;
-                let Some(&(from, to, road)) = self.steps(v).first() else {
-                    continue;
-                };
-                self.prepare(&[(from, to)]);
-                if self.change(from, to) < self.budget(from, to) - MINIMUM_GAIN {
-                    self.send(from, to, &[road]);
-                    count += 1;
-                }
-            }
-            total += count;
-            if count == 0 {
-                break;
-            }
-        }
-        Ok(total)
-    }
-
-    /// The two most promising ways to move one unit of a cone to a neighbour, as (from, to, road).
-    fn steps(&self, s: Vertex) -> Vec<(Vertex, Vertex, Road)> {
-        let sign = self.excess(s).signum();
-        let promise = |step: &(Vertex, Vertex, Road)| {
-            self.surrogate.linear(step.0, step.1) - self.budget(step.0, step.1)
-        };
-        let mut steps: Vec<_> = self
-            .sectors
-            .roads(s)
-            .filter(|road| {
-                !self.sectors.is_free(road.to)
-                    && self.excess(road.to) * sign <= 0
-                    && self.allows(road.to, self.index[road.to] + sign)
-                    && self.allows(s, self.index[s] - sign)
-            })
-            .map(
-                |road| if sign > 0 { (s, road.to, road) } else { (road.to, s, self.back(s, road)) },
-            )
-            .collect();
-        steps.sort_by(|x, y| {
-            let halfedges = x.2.halfedge.cmp(&y.2.halfedge);
-            promise(x).total_cmp(&promise(y)).then(halfedges)
-        });
-        steps.truncate(2);
-        steps
-    }
-
-    /// The road from the far end of one that leaves a sector back to it.
-    fn back(&self, s: Vertex, road: Road) -> Road {
-        match self.sectors.slit().twin(road.halfedge) {
-            Some(t) => Road { to: s, halfedge: t, sign: road.sign },
-            None => Road { to: s, halfedge: road.halfedge, sign: -road.sign },
-        }
-    }
+/// What is known of a cone: where it may go, and what it changes.
+struct Reach {
+    ball: Ball,
+    response: Response,
 }

@@ -1,7 +1,8 @@
 //! Choosing the rotations around handles and between boundaries for fixed cones.
 
-use crate::cut::{MatchedCut, Unfolding};
+use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::features::Sectors;
+use crate::field::frames_of;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, Vertex};
@@ -25,10 +26,10 @@ const MAX_MULTIPLE: f64 = 1e6;
 const MINIMUM_GAIN: f64 = 1e-9;
 
 /// Re-chooses the circulations of the matchings, which no cone sees: moving cones changes how much a
-/// loop around a handle turns, and the best integers change with it.
+/// loop around a handle turns, and the best integers change with it. With the smoothest frames for them.
 ///
-/// The matchings' difference to the isometric rotations is a flow on dual edges; what remains of it
-/// after the best rotation of every face is its divergence-free part, whose weighted square is made
+/// The matchings' difference to the isometric rotations is a flow on dual edges. The best rotation of every face,
+/// which is its frame, takes part of it away; what remains is its divergence-free part, whose weighted square is made
 /// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too).
 /// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
 /// moves. The cones stay.
@@ -39,33 +40,35 @@ pub fn fix_holonomy(
     sectors: &Sectors<'_>,
     metric: &Metric,
     mut matched: MatchedCut,
-) -> Result<MatchedCut, NotPositiveDefinite> {
-    let cycles = turning_cycles(sectors, &matched.unfolding);
-    if cycles.is_empty() {
-        return Ok(matched);
-    }
+) -> Result<FramedCut, NotPositiveDefinite> {
     let projector = Projector::new(sectors, metric, &matched.unfolding)?;
-    let flow: Vec<(u32, f64)> =
-        matched.excess().enumerate().map(|(s, excess)| (s as u32, -excess)).collect();
-    let target = projector.residual(&flow);
-    let columns: Vec<Vec<f64>> = cycles
-        .par_iter()
-        .map(|cycle| {
-            let flow: Vec<_> = cycle.iter().map(|&(s, sign)| (s, f64::from(sign))).collect();
-            projector.residual(&flow)
-        })
-        .collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let gram: Vec<Vec<f64>> =
-        columns.par_iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
-    let rhs: Vec<f64> = columns.iter().map(|a| dot(a, &target)).collect();
-    let multiples = closest_integers(&gram, &rhs);
-    for (cycle, &n) in cycles.iter().zip(&multiples) {
-        for &(s, sign) in cycle {
-            matched.matching[s as usize] += sign * n;
+    let excess = |matched: &MatchedCut| -> Vec<(u32, f64)> {
+        matched.excess().enumerate().map(|(s, excess)| (s as u32, excess)).collect()
+    };
+    let cycles = turning_cycles(sectors, &matched.unfolding);
+    if !cycles.is_empty() {
+        let target = projector.residual(&excess(&matched));
+        let columns: Vec<Vec<f64>> = cycles
+            .par_iter()
+            .map(|cycle| {
+                let flow: Vec<_> = cycle.iter().map(|&(s, sign)| (s, f64::from(sign))).collect();
+                projector.residual(&flow)
+            })
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let gram: Vec<Vec<f64>> =
+            columns.par_iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let rhs: Vec<f64> = columns.iter().map(|a| -dot(a, &target)).collect();
+        let multiples = closest_integers(&gram, &rhs);
+        for (cycle, &n) in cycles.iter().zip(&multiples) {
+            for &(s, sign) in cycle {
+                matched.matching[s as usize] += sign * n;
+            }
         }
     }
-    Ok(matched)
+    let turns = projector.turns(&excess(&matched));
+    let frames = frames_of(sectors.slit(), metric, &matched.unfolding, &turns);
+    Ok(FramedCut { matched, frames })
 }
 
 /// A basis of the cycles of the graph of turning edges, the free sectors merged to one: signed edges.
@@ -130,6 +133,7 @@ struct Projector {
     /// Dual edge of each turning edge.
     of_turning: Vec<u32>,
     weights: Vec<f64>,
+    faces: usize,
     nodes: usize,
     cholesky: Cholesky<f64>,
 }
@@ -173,25 +177,46 @@ impl Projector {
         let mut number = vec![0u32; slit.n_halfedges()];
         edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
         let of_turning = unfolding.turning.iter().map(|&h| number[h.at()]).collect();
-        Ok(Self { sides, of_turning, weights, nodes, cholesky })
+        Ok(Self { sides, of_turning, weights, faces: slit.n_faces(), nodes, cholesky })
     }
 
-    /// Square root of the weight times the remaining flow, per dual edge.
-    fn residual(&self, flow: &[(u32, f64)]) -> Vec<f64> {
+    /// A flow, given on turning edges, on all dual edges.
+    fn spread(&self, flow: &[(u32, f64)]) -> Vec<f64> {
         let mut x = vec![0.0; self.sides.len()];
         for &(e, value) in flow {
             x[self.of_turning[e as usize] as usize] += value;
         }
+        x
+    }
+
+    /// The rotations of the nodes whose differences across dual edges are nearest to a flow.
+    fn potential(&self, x: &[f64]) -> Vec<f64> {
         let mut turn = vec![0.0; self.nodes];
-        for ((&[left, right], x), w) in self.sides.iter().zip(&x).zip(&self.weights) {
+        for ((&[left, right], x), w) in self.sides.iter().zip(x).zip(&self.weights) {
             turn[right as usize] += w * x;
             turn[left as usize] -= w * x;
         }
         self.cholesky.solve_columns(&mut turn, 1);
+        turn
+    }
+
+    /// Square root of the weight times the remaining flow, per dual edge.
+    fn residual(&self, flow: &[(u32, f64)]) -> Vec<f64> {
+        let mut x = self.spread(flow);
+        let turn = self.potential(&x);
         for ((&[left, right], x), w) in self.sides.iter().zip(&mut x).zip(&self.weights) {
             *x = (*x - (turn[right as usize] - turn[left as usize])) * w.sqrt();
         }
         x
+    }
+
+    /// The best rotations of the faces for a flow, against the ground if there is one.
+    fn turns(&self, flow: &[(u32, f64)]) -> Vec<f64> {
+        let mut turn = self.potential(&self.spread(flow));
+        let ground = turn.get(self.faces).copied().unwrap_or(0.0);
+        turn.truncate(self.faces);
+        turn.iter_mut().for_each(|x| *x -= ground);
+        turn
     }
 }
 

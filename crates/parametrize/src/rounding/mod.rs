@@ -5,6 +5,7 @@ mod holonomy;
 mod options;
 mod patch;
 mod progressive;
+mod reach;
 mod relaxation;
 mod repair;
 mod surrogate;

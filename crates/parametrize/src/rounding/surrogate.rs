@@ -2,7 +2,7 @@
 
 use crate::features::Sectors;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -15,31 +15,37 @@ use std::f64::consts::FRAC_PI_2;
 /// of thin plates, which changes the price of a cone but not the order of preference. u vanishes at free
 /// sectors; on a piece of the slit surface without any, its mean does. Pieces do not feel each other
 /// across features, which makes the estimate too low there.
+///
+/// It is quadratic in the indices, so that the change for a unit of index that goes anywhere follows exactly from the
+/// gradient, the responses to a unit at either end, and the diagonal of these.
 pub struct Surrogate<'a> {
     sectors: &'a Sectors<'a>,
     area: VertexData<f64>,
     total: f64,
     pieces: Pieces,
+    /// Sectors whose log scale is not solved for: free ones, and one of each piece without any.
+    held: Vec<Vertex>,
     cholesky: Cholesky<f64>,
     /// Log scale of the present cones, negated.
     scale: Vec<f64>,
     /// `L^-1 M u`: half the gradient of the energy with respect to the curvature.
     gradient: Vec<f64>,
+    /// Change of the gradient at every sector for a unit of index less there.
+    own: VertexData<f64>,
 }
 
-/// What happens when one unit of index goes from one sector to another.
-#[derive(Debug, Clone, Copy)]
-pub struct Response {
-    /// Second-order change of the energy.
-    pub quadratic: f64,
-    /// Change of the negated log scale at the first and the second sector.
-    pub scale: [f64; 2],
-}
+/// What a unit of index less at one sector changes at all others: half the gradient of the energy, its value there taken
+/// from that at the sector itself. (Single precision is enough: values are used in differences, and small near the
+/// sector.)
+pub struct Response(Vec<f32>);
 
 /// Cotangent weights of edges are kept in this range: needles would drown everything else.
 const WEIGHT_RANGE: (f64, f64) = (0.02, 20.0);
 /// Right-hand sides solved together.
-const BATCH: usize = 8;
+const BATCH: usize = 4;
+/// The diagonal of `L^-1 M L^-1` is a difference quotient of that of `(L + t M)^-1` with t this over the whole area: a
+/// thousandth of the least eigenvalue, far above rounding errors.
+const QUOTIENT_STEP: f64 = 2e-4;
 
 impl<'a> Surrogate<'a> {
     /// Factors the Laplacian and evaluates the present cones.
@@ -84,58 +90,95 @@ impl<'a> Surrogate<'a> {
             sectors,
             area,
             total,
+            held: mesh.vertices().filter(|&s| fixed(s)).collect(),
             pieces,
             cholesky,
             scale: Vec::new(),
             gradient: Vec::new(),
+            own: VertexData::filled(n, 0.0),
         };
-        let excess: Vec<f64> = metric
-            .curvature(mesh)
-            .enumerate()
-            .map(|(v, k)| k - f64::from(index[v]) * FRAC_PI_2)
-            .collect();
-        surrogate.scale = surrogate.solve(excess);
-        surrogate.gradient = surrogate.solve(surrogate.weighted(&surrogate.scale));
+        surrogate.own = surrogate.own_responses(&pattern, &matrix)?;
+        surrogate.refresh(metric, index);
         Ok(surrogate)
+    }
+
+    /// The diagonal of `T M T` with `T` what [`Self::solve`] does, for a unit, from that of `P M P` with `P` the inverse in
+    /// which pins are held.
+    fn own_responses(
+        &mut self,
+        pattern: &Pattern,
+        matrix: &[f64],
+    ) -> Result<VertexData<f64>, NotPositiveDefinite> {
+        let t = QUOTIENT_STEP / self.total;
+        let sectors = || self.sectors.slit().vertices();
+        let mut held = VertexData::filled(self.area.len(), false);
+        self.held.iter().for_each(|&s| held[s] = true);
+        let slot = |s: Vertex| pattern.diagonal()[s.at()] as usize;
+        let [low, high] = [-t, t].map(|t| {
+            let mut shifted = matrix.to_vec();
+            for s in sectors().filter(|&s| !held[s]) {
+                shifted[slot(s)] += t * self.area[s];
+            }
+            self.cholesky.factorize(&shifted).map(|()| self.cholesky.selected_inverse(pattern))
+        });
+        let (low, high) = (low?, high?);
+        self.cholesky.factorize(matrix)?;
+        // h = P m and p = P M h, with their sums over each piece.
+        let mut h: Vec<f64> = self.area.to_vec();
+        self.hold(&mut h);
+        self.cholesky.solve_columns(&mut h, 1);
+        let mut p = self.weighted(&h);
+        let mean_h = self.pieces.means(p.iter().copied());
+        self.hold(&mut p);
+        self.cholesky.solve_columns(&mut p, 1);
+        let mean_p = self.pieces.means(self.weighted(&p).into_iter());
+        let of = |s: Vertex| {
+            let slope = (low[slot(s)] - high[slot(s)]) / (2.0 * t);
+            let held = if held[s] { 0.0 } else { slope };
+            let means = self.pieces.floating_area(s).map_or(0.0, |area| {
+                let (h, p) = (h[s.at()], p[s.at()]);
+                let [mean_h, mean_p] =
+                    [&mean_h, &mean_p].map(|m| m[self.pieces.of_sector[s] as usize]);
+                (mean_p - mean_h * mean_h - h * h - 2.0 * (p - h * mean_h)) / area
+            });
+            (held + means) * FRAC_PI_2
+        };
+        Ok(sectors().map(of).collect())
     }
 
     fn weighted(&self, u: &[f64]) -> Vec<f64> {
         u.iter().zip(self.area.iter()).map(|(u, m)| u * m).collect()
     }
 
-    /// `L^-1 b`, zero at free sectors; the mean of both sides is taken off where there are none.
-    fn solve(&self, mut b: Vec<f64>) -> Vec<f64> {
-        let sums = self.pieces.sums(b.iter().copied());
-        for (s, b) in self.sectors.slit().vertices().zip(&mut b) {
-            *b -= self.pieces.mean(&sums, s) * self.area[s];
+    /// Overwrites columns b with `L^-1 b`, zero at free sectors; the mean of both sides is taken off where there are
+    /// none.
+    fn solve(&self, columns: &mut [f64]) {
+        let n = self.area.len();
+        for b in columns.chunks_exact_mut(n) {
+            let means = self.pieces.means(b.iter().copied());
+            for ((b, piece), area) in
+                b.iter_mut().zip(self.pieces.of_sector.iter()).zip(self.area.iter())
+            {
+                *b -= means[*piece as usize] * area;
+            }
+            self.hold(b);
         }
-        self.hold(&mut b);
-        self.cholesky.solve_columns(&mut b, 1);
-        self.center(&mut b);
+        self.cholesky.solve_columns(columns, columns.len() / n);
+        for u in columns.chunks_exact_mut(n) {
+            let means = self.pieces.means(u.iter().zip(self.area.iter()).map(|(u, m)| u * m));
+            for (u, piece) in u.iter_mut().zip(self.pieces.of_sector.iter()) {
+                *u -= means[*piece as usize];
+            }
+        }
+    }
+
+    fn solved(&self, mut b: Vec<f64>) -> Vec<f64> {
+        self.solve(&mut b);
         b
     }
 
     fn hold(&self, b: &mut [f64]) {
-        for s in self.sectors.slit().vertices() {
-            if self.sectors.is_free(s) || self.pieces.pins(s) {
-                b[s.at()] = 0.0;
-            }
-        }
-    }
-
-    fn center(&self, u: &mut [f64]) {
-        let sums = self.pieces.sums(u.iter().zip(self.area.iter()).map(|(u, m)| u * m));
-        for (s, u) in self.sectors.slit().vertices().zip(u) {
-            *u -= self.pieces.mean(&sums, s);
-        }
-    }
-
-    fn add_dipole(&self, from: Vertex, to: Vertex, b: &mut [f64]) {
-        for (v, sign) in [(from, 1.0), (to, -1.0)] {
-            if !self.sectors.is_free(v) {
-                b[v.at()] += sign * FRAC_PI_2;
-            }
-        }
+        self.held.iter().for_each(|s| b[s.at()] = 0.0);
     }
 
     /// The energy.
@@ -144,58 +187,53 @@ impl<'a> Surrogate<'a> {
         8.0 / self.total * squares.sum::<f64>()
     }
 
-    /// First-order change of the energy when one unit of index goes from one sector to another.
-    pub fn linear(&self, from: Vertex, to: Vertex) -> f64 {
-        let at = |v: Vertex| {
-            if self.sectors.is_free(v) { 0.0 } else { self.gradient[v.at()] }
+    /// Change of the energy when a unit of index leaves `near` for `far`, or the other way if `sign` is negative: exact,
+    /// with the response to a unit at `near`.
+    pub fn change(&self, sign: i32, [near, far]: [Vertex; 2], of_near: &Response) -> f64 {
+        let linear = f64::from(sign) * (self.gradient[near.at()] - self.gradient[far.at()]);
+        // Of the diagonal a difference, in which its error is the same on both sides.
+        let own = self.own[far] - self.own[near];
+        let quadratic = 2.0 * f64::from(of_near.0[far.at()]) + own;
+        8.0 / self.total * FRAC_PI_2 * (2.0 * linear + quadratic)
+    }
+
+    /// Responses to a unit at each of some sectors.
+    pub fn responses(&self, at: &[Vertex]) -> Vec<Response> {
+        let n = self.area.len();
+        let of_chunk = |chunk: &[Vertex]| {
+            let mut columns = vec![0.0; n * chunk.len()];
+            for (column, v) in columns.chunks_exact_mut(n).zip(chunk) {
+                column[v.at()] = if self.sectors.is_free(*v) { 0.0 } else { FRAC_PI_2 };
+            }
+            self.solve(&mut columns);
+            for column in columns.chunks_exact_mut(n) {
+                column.iter_mut().zip(self.area.iter()).for_each(|(u, m)| *u *= m);
+            }
+            self.solve(&mut columns);
+            let falls = columns.chunks_exact(n).zip(chunk).map(|(column, v)| {
+                let own = column[v.at()];
+                Response(column.iter().map(|g| (own - g) as f32).collect())
+            });
+            falls.collect::<Vec<_>>()
         };
-        8.0 / self.total * 2.0 * FRAC_PI_2 * (at(from) - at(to))
+        at.par_chunks(BATCH).flat_map_iter(of_chunk).collect()
     }
 
-    /// Responses to a unit sent from the first to the second sector of several pairs; they do not depend
-    /// on the present cones.
-    pub fn responses(&self, pairs: &[(Vertex, Vertex)]) -> Vec<Response> {
-        let n = self.sectors.slit().n_vertices();
-        pairs
-            .par_chunks(BATCH)
-            .flat_map_iter(|chunk| {
-                let mut columns = vec![0.0; n * chunk.len()];
-                for (column, &(from, to)) in columns.chunks_mut(n).zip(chunk) {
-                    self.add_dipole(from, to, column);
-                    self.hold(column);
-                }
-                self.cholesky.solve_columns(&mut columns, chunk.len());
-                let area = &self.area;
-                let values: Vec<Response> = columns
-                    .chunks_mut(n)
-                    .zip(chunk)
-                    .map(|(column, (from, to))| {
-                        self.center(column);
-                        let squares = column.iter().zip(area.iter()).map(|(u, m)| m * u * u);
-                        Response {
-                            quadratic: 8.0 / self.total * squares.sum::<f64>(),
-                            scale: [column[from.at()], column[to.at()]],
-                        }
-                    })
-                    .collect();
-                values
-            })
-            .collect()
+    /// Moves one unit of index between two sectors with these responses. The gradient is then off by a constant and by
+    /// single precision, and the energy is that of before, until [`Self::refresh`].
+    pub fn transport(&mut self, from: &Response, to: &Response) {
+        for ((g, a), b) in self.gradient.iter_mut().zip(&from.0).zip(&to.0) {
+            *g += f64::from(*b) - f64::from(*a);
+        }
     }
 
-    /// Log scale at a sector, negated.
-    pub fn scale(&self, v: Vertex) -> f64 {
-        self.scale[v.at()]
-    }
-
-    /// Moves one unit of index from one sector to another.
-    pub fn transport(&mut self, from: Vertex, to: Vertex) {
-        let mut curvature = vec![0.0; self.sectors.slit().n_vertices()];
-        self.add_dipole(from, to, &mut curvature);
-        let change = self.solve(curvature);
-        self.scale.iter_mut().zip(&change).for_each(|(u, d)| *u += d);
-        let second = self.solve(self.weighted(&change));
-        self.gradient.iter_mut().zip(&second).for_each(|(g, d)| *g += d);
+    /// Evaluates cones.
+    pub fn refresh(&mut self, metric: &Metric, index: &VertexData<i32>) {
+        let curvature = metric.curvature(self.sectors.slit());
+        let excess = curvature.iter().zip(index.iter());
+        let excess = excess.map(|(k, &index)| k - f64::from(index) * FRAC_PI_2).collect();
+        self.scale = self.solved(excess);
+        self.gradient = self.solved(self.weighted(&self.scale));
     }
 }
 
@@ -234,19 +272,19 @@ impl Pieces {
         self.floating[self.of_sector[s] as usize].is_some_and(|(first, _)| first == s)
     }
 
-    /// Sum of a value per sector over each piece.
-    fn sums(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
+    /// The area of the piece of a sector, if it floats.
+    fn floating_area(&self, s: Vertex) -> Option<f64> {
+        self.floating[self.of_sector[s] as usize].map(|(_, area)| area)
+    }
+
+    /// Sums of a value per sector over each piece, by its area; zero for pieces that do not float.
+    fn means(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut sums = vec![0.0; self.floating.len()];
         for (value, piece) in values.zip(self.of_sector.iter()) {
             sums[*piece as usize] += value;
         }
-        sums
-    }
-
-    /// Sum over the area for the piece of a sector, zero if it does not float.
-    fn mean(&self, sums: &[f64], s: Vertex) -> f64 {
-        let piece = self.of_sector[s] as usize;
-        self.floating[piece].map_or(0.0, |(_, area)| sums[piece] / area)
+        let means = sums.iter().zip(&self.floating);
+        means.map(|(sum, floating)| floating.map_or(0.0, |(_, area)| sum / area)).collect()
     }
 }
 

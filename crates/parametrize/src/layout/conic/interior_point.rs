@@ -6,6 +6,7 @@
 //! Newton's method uses. Nesterov-Todd scalings, steps by Mehrotra's predictor and corrector.
 
 use super::cells::{Cones, DeviationCones, StretchCones};
+use super::energy_term::{EnergyTerm, dot};
 use super::passes::{Cell, Tally, affine_steps, assemble, corrected_steps, correction, move_on};
 use super::program::{Program, ProgramKind, Renewal};
 use super::solver::{ConicSolution, Outcome, Solver, SolverOptions};
@@ -42,12 +43,37 @@ pub fn solve(
 ) -> Result<ConicSolution, Cancelled> {
     match program.kind {
         ProgramKind::Stretch => {
-            run::<3, 3, StretchCones>(problem, program, y, renewal, options, watch)
+            run::<3, 3, StretchCones>(problem, program, y, renewal, None, options, watch)
         }
         ProgramKind::Deviation => {
-            run::<5, 1, DeviationCones>(problem, program, y, renewal, options, watch)
+            run::<5, 1, DeviationCones>(problem, program, y, renewal, None, options, watch)
         }
     }
+}
+
+/// A term of the objective, and who decides in every iteration what it weighs at the layout reached.
+pub(super) struct Tradeoff<'a> {
+    pub(super) term: EnergyTerm,
+    pub(super) weigh: &'a mut Weigh<'a>,
+}
+
+/// Gives the best global scale and a weight for a layout.
+pub(super) type Weigh<'a> = dyn FnMut(&LayoutProblem, &[f64], &[Complex64]) -> (f64, f64) + 'a;
+
+/// As [`solve`] for programs of [`ProgramKind::Stretch`], frames renewed, with the energy as a term of the objective.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn solve_with_energy(
+    problem: &mut LayoutProblem,
+    program: &Program,
+    y: &[f64],
+    tradeoff: Tradeoff<'_>,
+    options: &SolverOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<ConicSolution, Cancelled> {
+    let renewal = Renewal::Frames;
+    run::<3, 3, StretchCones>(problem, program, y, renewal, Some(tradeoff), options, watch)
 }
 
 /// Vectors that all iterations share.
@@ -67,6 +93,7 @@ fn run<const D: usize, const C: usize, K: Cones<D, C>>(
     program: &Program,
     y: &[f64],
     renewal: Renewal,
+    tradeoff: Option<Tradeoff<'_>>,
     options: &SolverOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<ConicSolution, Cancelled> {
@@ -93,13 +120,15 @@ fn run<const D: usize, const C: usize, K: Cones<D, C>>(
         vectors.y.iter_mut().for_each(|x| *x *= scale);
         vectors.z.iter_mut().for_each(|x| *x *= scale);
         let cells = start::cells::<D, C, K>(problem, program, &vectors.z, bound);
-        let mut run = Run::<D, C, K> {
+        let mut run = Run::<'_, '_, D, C, K> {
             problem,
             cells,
             vectors,
             bound,
             infeasibility: 1.0,
             renewal,
+            tradeoff,
+            forward: vec![0.0; n],
             cones: std::marker::PhantomData,
         };
         end.outcome = run.iterate(options, &mut end, watch)?;
@@ -110,7 +139,7 @@ fn run<const D: usize, const C: usize, K: Cones<D, C>>(
     Ok(end)
 }
 
-struct Run<'p, const D: usize, const C: usize, K> {
+struct Run<'p, 't, const D: usize, const C: usize, K> {
     problem: &'p mut LayoutProblem,
     cells: Vec<Cell<D, C>>,
     vectors: Vectors,
@@ -118,10 +147,13 @@ struct Run<'p, const D: usize, const C: usize, K> {
     /// What is left of the start's dual infeasibility.
     infeasibility: f64,
     renewal: Renewal,
+    tradeoff: Option<Tradeoff<'t>>,
+    /// Solution for the gradient of the term, negated: zero without one.
+    forward: Vec<f64>,
     cones: std::marker::PhantomData<K>,
 }
 
-impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
+impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, '_, D, C, K> {
     fn iterate(
         &mut self,
         options: &SolverOptions,
@@ -146,6 +178,10 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
             if end.iterations == options.max_iterations {
                 return Ok(Outcome::IterationLimit);
             }
+            if let Some(Tradeoff { term, weigh }) = &mut self.tradeoff {
+                let (scale, weight) = weigh(self.problem, &v.y, &v.z);
+                term.add_to(self.problem, &v.y, scale, weight);
+            }
             let raised = |&raise: &f64| self.problem.factorize_as_is(raise).is_ok();
             if !(now.gap.is_finite() && RAISES.iter().any(raised)) {
                 return Ok(Outcome::LostDefiniteness);
@@ -163,14 +199,19 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
     /// [`Outcome::Stalled`] if the step leads nowhere.
     fn step(&mut self, now: &Tally) -> Result<(), Outcome> {
         let (problem, v) = (&mut *self.problem, &mut self.vectors);
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         v.border_solution.copy_from_slice(&v.border);
-        problem.solve(&mut v.border_solution);
+        match &mut self.tradeoff {
+            None => problem.solve(&mut v.border_solution),
+            Some(tradeoff) => {
+                self.forward = tradeoff.term.solve(problem, &mut v.border_solution);
+            }
+        }
         let pivot = now.corner - dot(&v.border, &v.border_solution);
 
-        // The predictor's right-hand side is that of mu alone: the rest cancels.
-        let affine_bound = -1.0 / pivot;
+        // The predictor's right-hand side is that of mu and the term alone: the rest cancels.
+        let affine_bound = (-1.0 - dot(&v.border, &self.forward)) / pivot;
         scale_into(&v.border_solution, -affine_bound, &mut v.step);
+        add_into(&self.forward, &mut v.step);
         problem.space().expand_into(&v.step, &mut v.dz);
         let affine = affine_steps::<D, C, K>(problem, &mut self.cells, &v.dz, affine_bound);
         let centring = affine.centring(now.gap).clamp(SMALLEST_CENTRING, 1.0);
@@ -178,6 +219,10 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
 
         let tally = correction::<D, C, K>(problem, &mut self.cells, target, &mut v.step);
         problem.solve(&mut v.step);
+        if let Some(Tradeoff { term, .. }) = &self.tradeoff {
+            term.correct(&mut v.step);
+            add_into(&self.forward, &mut v.step);
+        }
         let bound_step = (tally.corner - 1.0 - dot(&v.border, &v.step)) / pivot;
         for (x, b) in v.step.iter_mut().zip(&v.border_solution) {
             *x -= bound_step * b;
@@ -200,6 +245,10 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, D, C, K> {
         move_on(problem, &mut self.cells, primal, dual);
         Ok(())
     }
+}
+
+fn add_into(from: &[f64], to: &mut [f64]) {
+    to.iter_mut().zip(from).for_each(|(to, x)| *to += x);
 }
 
 fn scale_into(from: &[f64], factor: f64, to: &mut [f64]) {

@@ -7,6 +7,7 @@ mod cone;
 mod descent;
 mod dispatch;
 mod element;
+mod energy_term;
 mod fused;
 mod general;
 pub mod interior_point;
@@ -20,6 +21,7 @@ pub mod solver;
 mod start;
 
 pub use dispatch::solve;
+pub(super) use fused::trade;
 pub use measure::MaximalMeasure;
 pub use program::{Program, ProgramKind, Renewal};
 pub use solver::{ConicSolution, Outcome, Solver, SolverOptions};

@@ -41,7 +41,7 @@ pub(super) fn optimize(
     if !(bound >= 1.0 && bound.is_finite()) {
         return Err(OptimizeError::BadBound { bound });
     }
-    let energy = |layout: &ExactLayout, y: &[f64]| layout.distortion(y).0;
+    let energy = |layout: &ExactLayout, y: &[f64]| layout.figures(y).symmetric_dirichlet;
     let before = energy(layout, &start);
     let mut inside = Found::new(start.clone(), 0, Ending::Converged);
     if dilatation(layout, &start) >= bound {
@@ -89,7 +89,7 @@ fn behind_barrier(
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Vec<f64>, usize, Stop), Cancelled> {
     layout.rescale(&mut y);
-    let size = layout.distortion(&y).0;
+    let size = layout.figures(&y).symmetric_dirichlet;
     let (mut iterations, mut stop) = (0, Stop::Stalled);
     for share in FADE {
         let energy = BoundedDilatation::new(wall, share * size);
