@@ -35,7 +35,7 @@ fn maps_are_as_without_them() {
             assert!(e.degenerate > 0, "{name} {k}");
             assert!(e.tau < d.tau + 0.15, "{name} {k}: tau {} was {}", e.tau, d.tau);
             let (sd, se) = (d.symmetric_dirichlet, e.symmetric_dirichlet);
-            assert!((se - sd).abs() < 0.05, "{name} {k}: energy {se} was {sd}");
+            assert!((se - sd).abs() < 0.08, "{name} {k}: energy {se} was {sd}");
             // Where creases say where they are; on a torus many places do as well.
             if name == "bracket" {
                 assert_eq!(map.cones().len(), other.cones().len(), "{name} {k}");

@@ -59,7 +59,10 @@ pub fn polish(
     options: &PolishOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Polished, Cancelled> {
-    let start = Candidate::new(layout.problem(), relaxed, &layout.expand(relaxed));
+    let start = Candidate {
+        y: relaxed.to_vec(),
+        ..Candidate::new(layout.problem(), relaxed, &layout.expand(relaxed))
+    };
     let mut search = Search::new(start, options.max_energy_rise);
     if options.max_energy_rise <= 0.0 {
         return Ok(Polished { y: search.within.y, iterations: 0 });

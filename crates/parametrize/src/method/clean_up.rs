@@ -95,7 +95,9 @@ pub(super) fn clean_up(
     if stats.cancelled + stats.moved == 0 {
         return Ok(None);
     }
+    watch.pulse()?;
     let start = fix_holonomy(sectors, metric, matched)?;
+    watch.pulse()?;
     let worth = price * f64::from(stats.saved);
     Ok(Some(Cleaned { start, estimate: stats.energy, worth }))
 }

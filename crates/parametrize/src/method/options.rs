@@ -10,8 +10,7 @@ use seamstress_mesh::Metric;
 /// What a map is for, which decides what its cones may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Purpose {
-    /// Textures, or any other use of the map itself: clean-up is undone where it raises tau by more than 5 % or the
-    /// energy's excess over 4 by more than 20 %, whatever the price.
+    /// Textures, or any other use of the map itself.
     #[default]
     Texture,
     /// A quad mesh. Every quarter turn of a cone has its price, because each bends the quads around it. A few distorted
@@ -31,7 +30,7 @@ pub struct MapOptions {
     /// What the map is for.
     pub purpose: Purpose,
     /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
-    /// cones as they were rounded. None: 0.0006; for quads the share of the surface that four of them have, but at
+    /// cones as they were rounded. None: 0.0005; for quads the share of the surface that four of them have, but at
     /// least 0.0015.
     pub cone_price: Option<f64>,
     /// The least turn of a corner of aligned curves, degrees: in itself, and for quads from the mean direction over a
@@ -40,7 +39,7 @@ pub struct MapOptions {
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`](super::MapError::Released)) rather than a
     /// line in the result.
     pub strict_features: bool,
-    /// The finish that lowers tau. None: growing powers of the energy alone, as clean-up is judged by.
+    /// The finish that lowers tau; none leaves the map of least energy.
     pub polish: Option<PolishOptions>,
     /// What to minimise in the end, instead of the compromise of mean and worst distortion that is made
     /// without it.

@@ -56,6 +56,8 @@ pub struct CleanUpOptions {
 
 /// Rounds in which every cone may go once; the last ones hardly find anything.
 const ROUNDS: usize = 12;
+/// Cones looked at between two looks at the watch.
+const LOOKS: usize = 32;
 /// A cone reaches the area that this many have on average.
 const REACH: f64 = 4.0;
 /// Most cones that go at the same time, and the part of its profit that each must keep when those before it have gone.
@@ -84,6 +86,10 @@ pub fn clean_up(
     let index = matched.sector_indices(sectors, metric);
     let mut work = CleanUp::new(sectors, metric, index, *options)?;
     let before = work.count();
+    for some in work.cones().chunks(LOOKS) {
+        watch.pulse()?;
+        work.look_around(some);
+    }
     let mut stats = CleanUpStats::default();
     for round in 0..ROUNDS {
         watch.tick(round as f64 / ROUNDS as f64)?;
@@ -146,7 +152,7 @@ impl<'a> CleanUp<'a> {
         let excess: VertexData<i32> = excess.collect();
         let cones = excess.iter().filter(|&&excess| excess != 0).count();
         let part = REACH / cones.max(1) as f64;
-        let mut work = Self {
+        Ok(Self {
             surrogate: Surrogate::new(sectors, metric, &index)?,
             range: slit.vertices().map(range).collect(),
             transport: HalfedgeData::filled(sectors.slit().n_halfedges(), 0),
@@ -156,10 +162,7 @@ impl<'a> CleanUp<'a> {
             metric,
             excess,
             options,
-        };
-        let cones = work.cones();
-        work.look_around(&cones);
-        Ok(work)
+        })
     }
 
     /// Finds where some cones may go, and what they change.

@@ -42,7 +42,7 @@ pub struct Args {
     corner_weights: Vec<f64>,
 
     /// Distortion that may be paid for one cone fewer
-    #[arg(long, value_name = "X", default_value_t = 0.0006)]
+    #[arg(long, value_name = "X", default_value_t = 0.0005)]
     cone_price: f64,
 
     /// Check every map with `python3 SCRIPT --strict --features PAIRS SOURCE MAP`, which prints a JSON object
