@@ -63,8 +63,8 @@ const REACH: f64 = 4.0;
 /// Most cones that go at the same time, and the part of its profit that each must keep when those before it have gone.
 const TOGETHER: usize = 4;
 const STANDING: f64 = 0.5;
-/// Mean symmetric Dirichlet energy that a move has to gain: a thousandth of the price of a cone, or cones walk to and
-/// fro.
+/// Mean symmetric Dirichlet energy that a move has to gain: a part in 500 of the price of a cone, or cones walk to
+/// and fro.
 const MINIMUM_GAIN: f64 = 1e-6;
 
 /// Cancels pairs of cones and moves cones while the surrogate energy grows by less than the price per cone removed; the
