@@ -6,9 +6,11 @@
 //! * [`Metric`]: edge lengths and what follows from them: angles, areas, flat corners, curvature.
 //! * [`features`]: edges that lines of a map should follow, and the curves they form.
 //! * [`components`]: the connected pieces of a soup, each a mesh of its own.
+//! * [`attributes`]: what a mesh carries: values of vertices, corners and faces.
 //!
 //! Nothing here reads files, solves systems or prints.
 
+pub mod attributes;
 pub mod components;
 pub mod features;
 mod flat;

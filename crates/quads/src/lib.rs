@@ -17,6 +17,7 @@ mod split;
 mod stretch;
 mod surface;
 mod surface_point;
+mod transfer;
 mod untangle;
 mod vector;
 
@@ -27,4 +28,5 @@ pub use manifold::{GoesOn, ManifoldError, ManifoldQuads, manifold_quads};
 pub use mesh::{QuadMesh, QuadMeshError};
 pub use smooth::{SmoothError, SmoothOptions, Smoothed, smooth};
 pub use surface::locate;
+pub use transfer::Transfer;
 pub use untangle::{UntangleOptions, Untangling, untangle};
