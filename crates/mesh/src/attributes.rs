@@ -162,7 +162,7 @@ impl Attribute {
             let n = self.rows.len();
             return Err(format!("{name}: values for {n} {domain}; the mesh has {n_elements}"));
         }
-        if self.width > 0 && self.values.len() % self.width != 0 {
+        if self.width > 0 && !self.values.len().is_multiple_of(self.width) {
             let (n, width) = (self.values.len(), self.width);
             return Err(format!("{name}: {n} numbers are no rows of {width}"));
         }

@@ -1,10 +1,11 @@
 //! Quad meshes, cross fields and feature curves.
 
-use crate::arrays::array;
+use crate::arrays::{array, numbers};
 use crate::errors;
 use crate::json::{json, options};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes};
+use seamstress::{Attribute, AttributeDomain, AttributeKind};
 
 /// A quad mesh.
 #[pyclass(frozen, module = "seamstress_mesh._native")]
@@ -38,6 +39,31 @@ impl Quads {
     fn source_bary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
         let sources = self.0.sources().iter();
         array(py, &sources.flat_map(|source| source.barycentric).collect::<Vec<_>>())
+    }
+
+    /// Values of the input of the surface carried over: rows of `width` numbers (n, width) float64 on `vertex`, `corner`
+    /// or `face`, mixed unless they are labels.
+    fn transfer<'py>(
+        &self,
+        py: Python<'py>,
+        values: &[u8],
+        width: usize,
+        on: &str,
+        is_label: bool,
+    ) -> PyResult<Bound<'py, PyByteArray>> {
+        let domain = match on {
+            "vertex" => AttributeDomain::Vertex,
+            "corner" => AttributeDomain::Corner,
+            _ => AttributeDomain::Face,
+        };
+        let kind = if is_label { AttributeKind::Label } else { AttributeKind::Number };
+        let values: Vec<f64> = numbers(values);
+        let attribute = Attribute::new("values", domain, kind, width, Vec::new());
+        let attribute = attribute.with_values(domain, &values);
+        let carried = py.detach(|| self.0.transfer(&[attribute]));
+        let carried = carried.map_err(|error| errors::exception(py, &error))?;
+        let rows = carried.iter().flat_map(|c| c.rows.iter().flat_map(|&row| c.row(row))).copied();
+        array(py, &rows.collect::<Vec<f64>>())
     }
 
     /// The report as JSON.

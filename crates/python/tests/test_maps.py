@@ -164,3 +164,26 @@ def test_notebooks_show_figures_and_pictures(spot: sm.Surface, spot_map: sm.Seam
     assert {name: picture[:4] for name, picture in spot_map.pictures(view="top", up="z").items()} == {
         name: b"\x89PNG" for name in ("front", "back", "layout")
     }
+
+
+def test_values_are_transferred_to_quads() -> None:
+    v, quads = cube(4)
+    polygons = np.array(quads)
+    q = sm.Surface(v, quads).quad_mesh(384)
+    # Linear on vertices, and on each side of the cube with a shift of its own.
+    assert np.allclose(q.transfer(v @ [1.0, 2.0, 3.0]), q.vertices @ [1.0, 2.0, 3.0])
+    side = np.arange(len(quads)) // 16
+    corners = v[polygons] + 10.0 * side[:, None, None]
+    found = q.transfer(corners, on="corner")
+    assert found.shape == (len(q.quads), 4, 3) and np.allclose(q.transfer(corners.reshape(-1, 3), on="corner"), found)
+    shifts = np.rint((found - q.vertices[q.quads]) / 10.0)
+    assert np.allclose(found, q.vertices[q.quads] + 10.0 * shifts) and (shifts == shifts[:, :1, :1]).all()
+    sides = q.transfer(side, on="face")
+    assert sides.dtype == side.dtype and (sides == shifts[:, 0, 0]).all()
+    names = q.transfer(np.array(list("abcdef"))[side], on="face")
+    assert names.shape == (len(q.quads),) and (names == np.array(list("abcdef"))[sides]).all()
+    assert (q.transfer(np.where(side > 2, 1.0, 0.0), on="face") == (sides > 2)).all()
+    with pytest.raises(sm.InputError, match="values for 3 vertices; the mesh has"):
+        q.transfer([1.0, 2.0, 3.0])
+    with pytest.raises(sm.InputError, match="none of vertex, corner and face"):
+        q.transfer(side, on="edge")  # type: ignore[arg-type]

@@ -61,48 +61,54 @@ impl<'a> Transfer<'a> {
         Ok(transfer)
     }
 
-    /// An attribute of the triangles as one of the quads.
+    /// An attribute of the triangles as one of the quads: of vertices or of corners, or of the quads one of triangles.
     #[must_use]
-    pub fn carry(&self, attribute: &Attribute) -> Attribute {
-        match attribute.domain {
-            AttributeDomain::Vertex => self.carry_vertices(attribute),
-            AttributeDomain::Corner => self.carry_corners(attribute),
-            AttributeDomain::Face => self.carry_faces(attribute),
+    pub fn carry(&self, attribute: &Attribute, to: AttributeDomain) -> Attribute {
+        match (attribute.domain, to) {
+            (AttributeDomain::Face, _) => self.carry_faces(attribute),
+            (AttributeDomain::Corner, AttributeDomain::Corner) => self.carry_corners(attribute),
+            (_, AttributeDomain::Corner) => {
+                let vertices = self.quads.quads().as_flattened().iter().map(|&v| v as usize);
+                self.carry_to_vertices(attribute).on(AttributeDomain::Corner, vertices)
+            }
+            _ => self.carry_to_vertices(attribute),
         }
     }
 
-    fn carry_vertices(&self, attribute: &Attribute) -> Attribute {
-        let domain = AttributeDomain::Vertex;
-        let rows = |place: &SurfacePoint| self.faces[place.face as usize].map(|v| v as usize);
+    fn carry_to_vertices(&self, attribute: &Attribute) -> Attribute {
+        self.at(AttributeDomain::Vertex, attribute, &self.places)
+    }
+
+    /// An attribute of vertices or corners at points.
+    fn at(
+        &self,
+        domain: AttributeDomain,
+        attribute: &Attribute,
+        points: &[SurfacePoint],
+    ) -> Attribute {
+        let elements = |point: &SurfacePoint| match attribute.domain {
+            AttributeDomain::Vertex => self.faces[point.face as usize].map(|v| v as usize),
+            _ => [0, 1, 2].map(|k| 3 * point.face as usize + k),
+        };
         if attribute.kind == AttributeKind::Label {
-            let nearest = self.places.iter().map(|p| rows(p)[heaviest(p.barycentric)]);
+            let nearest = points.iter().map(|p| elements(p)[heaviest(p.barycentric)]);
             return attribute.on(domain, nearest);
         }
-        let mix = |p: &SurfacePoint| mixed(attribute, rows(p), p.barycentric);
-        let values: Vec<f64> = self.places.iter().flat_map(mix).collect();
+        let mix = |p: &SurfacePoint| mixed(attribute, elements(p), p.barycentric);
+        let values: Vec<f64> = points.iter().flat_map(mix).collect();
         attribute.with_values(domain, &finished(attribute, values))
     }
 
     fn carry_corners(&self, attribute: &Attribute) -> Attribute {
-        let domain = AttributeDomain::Corner;
         let is_joined = self.joined(attribute);
         let quads: Vec<(&[u32; 4], &Patch)> =
             self.quads.quads().iter().zip(&self.patches).collect();
-        let places: Vec<[SurfacePoint; 4]> = quads
-            .par_iter()
-            .map(|(quad, patch)| {
-                let island = self.island(patch, &is_joined);
-                quad.map(|v| self.place_in(&island, v as usize))
-            })
-            .collect();
-        let places = places.as_flattened();
-        let rows = |p: &SurfacePoint| [0, 1, 2].map(|k| 3 * p.face as usize + k);
-        if attribute.kind == AttributeKind::Label {
-            return attribute.on(domain, places.iter().map(|p| rows(p)[heaviest(p.barycentric)]));
-        }
-        let mix = |p: &SurfacePoint| mixed(attribute, rows(p), p.barycentric);
-        let values: Vec<f64> = places.iter().flat_map(mix).collect();
-        attribute.with_values(domain, &finished(attribute, values))
+        let places = quads.par_iter().map(|(quad, patch)| {
+            let island = self.island(patch, &is_joined);
+            quad.map(|v| self.place_in(&island, v as usize))
+        });
+        let places: Vec<[SurfacePoint; 4]> = places.collect();
+        self.at(AttributeDomain::Corner, attribute, places.as_flattened())
     }
 
     fn carry_faces(&self, attribute: &Attribute) -> Attribute {

@@ -9,6 +9,7 @@
 //! | a seamless map | [`Surface::parametrize`] |
 //! | an integer-grid map | [`Surface::integer_map`], [`Surface::integer_map_of`] |
 //! | a quad mesh | [`Surface::quad_mesh`], [`Surface::extract_quads`] |
+//! | UVs, materials, colours and other attributes of the mesh on the quads | [`QuadMesh::transfer`] |
 //! | to know whether a map is seamless | [`Surface::certify`], [`Surface::certify_with`] |
 //! | its distortion | [`Surface::measure`] |
 //! | another distortion minimised | [`Surface::optimize`], [`Surface::flatten_disk`] |
@@ -48,6 +49,7 @@
 //! | `schema` | | JSON schemas |
 //! | `clap` | | options as command-line arguments |
 
+mod attributes;
 mod certify;
 #[doc(hidden)]
 pub mod command_reports;
@@ -130,6 +132,7 @@ pub use surface::Surface;
 #[cfg(feature = "io")]
 #[doc(hidden)]
 pub use seamstress_io::AtomicFile;
+pub use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 pub use seamstress_parametrize::MixedIntegerStats;
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 pub use seamstress_parametrize::quality::Measure;

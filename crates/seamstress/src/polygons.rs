@@ -14,8 +14,17 @@ impl Polygons {
 
     pub(crate) fn get(&self, polygon: usize) -> Option<&[u32]> {
         let end = *self.ends.get(polygon)?;
-        let start = polygon.checked_sub(1).map_or(0, |before| self.ends[before]);
-        Some(&self.corners[start..end])
+        Some(&self.corners[self.corner_start(polygon)..end])
+    }
+
+    /// The position of the first corner of a polygon among those of all.
+    pub(crate) fn corner_start(&self, polygon: usize) -> usize {
+        polygon.checked_sub(1).map_or(0, |before| self.ends[before])
+    }
+
+    /// The vertices of all corners, polygon after polygon.
+    pub(crate) fn corners(&self) -> &[u32] {
+        &self.corners
     }
 
     pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {

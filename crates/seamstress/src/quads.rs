@@ -251,6 +251,10 @@ impl QuadMesh {
         self.extraction.mesh.quads()
     }
 
+    pub(crate) fn mesh(&self) -> &quads::QuadMesh {
+        &self.extraction.mesh
+    }
+
     /// The point of the surface at which the map has each vertex: a face and barycentric coordinates.
     pub fn sources(&self) -> &[SurfacePoint] {
         &self.extraction.sources

@@ -103,6 +103,22 @@ def map_bytes(uv: npt.ArrayLike, face_uv: npt.ArrayLike | None, faces: Ints, n_v
     return array.tobytes(), np.ascontiguousarray(corners).tobytes()
 
 
+def value_rows(values: npt.ArrayLike, on: str) -> tuple[Floats, tuple[int, ...], npt.NDArray[Any] | None]:
+    """Values of elements as rows of real numbers, the shape of the value of one, and the labels that numbers stand for."""
+    array = np.asarray(values)
+    if on == "corner" and array.ndim == 3:
+        array = array.reshape(-1, array.shape[2])
+    if array.ndim not in (1, 2) or 0 in array.shape[1:]:
+        raise InputError(f"values have the shape {array.shape}, not (n,) or (n, d)")
+    shape = array.shape[1:]
+    if array.dtype.kind == "f":
+        return floats(array.reshape(len(array), -1), (-1, -1), "values"), shape, None
+    if array.dtype.kind not in "biuSU":
+        raise InputError(f"values are neither numbers nor strings: their dtype is {array.dtype}")
+    labels, numbers = np.unique(array, axis=0, return_inverse=True)
+    return numbers.reshape(-1, 1).astype(np.float64), shape, labels
+
+
 def float_rows(content: bytearray, *shape: int) -> Floats:
     """An array of float64 from the compiled half."""
     return np.frombuffer(content, dtype=np.float64).reshape(-1, *shape) if shape else np.frombuffer(content)

@@ -7,12 +7,17 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
+import numpy as np
+
 from . import _native
-from ._arrays import Floats, Ints, float_rows, int_rows
+from ._arrays import Floats, Ints, float_rows, int_rows, value_rows
 from ._errors import InputError
 from ._html import figure, page
 
 if TYPE_CHECKING:
+    from typing import Literal
+
+    import numpy.typing as npt
     from typing_extensions import Self
 
     from ._surface import Surface
@@ -174,6 +179,27 @@ class QuadMesh(_Made[_native.Quads]):
             json.loads(made.report()),
             made,
         )
+
+    def transfer(self, values: npt.ArrayLike, on: Literal["vertex", "corner", "face"] = "vertex") -> npt.NDArray[Any]:
+        """Values of the input of the surface, brought over to the quads.
+
+        Values have a row for each vertex, corner or polygon of what the surface was made of, in its order; those of
+        corners may also be (m, k, d). The result has a row for each vertex (n, ...), corner (k, 4, ...) or quad (k, ...).
+        Real numbers are interpolated, on faces averaged by area; whole numbers, truth values and strings stand for
+        something and are never mixed: a quad has the one with the largest share. At corners a quad takes the values of
+        one side of a seam, the one that its middle lies on, continued linearly.
+
+        Raises ``InputError`` if there are not as many rows.
+        """
+        if on not in ("vertex", "corner", "face"):
+            raise InputError(f"on: {on!r} is none of vertex, corner and face")
+        if isinstance(self._made, bytes):
+            raise InputError("what was pickled takes no values; transfer them before")
+        rows, shape, labels = value_rows(values, on)
+        carried = self._made.transfer(rows.tobytes(), rows.shape[1], on, labels is not None)
+        leading = {"vertex": (len(self.vertices),), "corner": (*self.quads.shape,), "face": (len(self.quads),)}[on]
+        found = float_rows(carried, rows.shape[1])
+        return found.reshape(leading + shape) if labels is None else labels[found[:, 0].astype(np.int64)].reshape(leading + shape)
 
     def picture(self, **options: Any) -> bytes:
         """A picture with its irregular vertices, as a PNG file. Options are those of the command line's pictures."""

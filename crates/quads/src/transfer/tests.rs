@@ -20,7 +20,7 @@ impl Case {
     fn carry(&self, attribute: &Attribute) -> Attribute {
         let surface = (&self.soup.positions[..], &self.soup.faces[..]);
         let transfer = Transfer::new(&self.mesh, surface, &self.quads, &self.sources).unwrap();
-        transfer.carry(attribute)
+        transfer.carry(attribute, attribute.domain)
     }
 
     /// Values of corners of the triangles: a function of the middle of the triangle and the corner.

@@ -1,0 +1,95 @@
+//! What a mesh carries beside its shape, in the ids of its input, brought to its triangles and to quads.
+
+use crate::error::{Error, ErrorKind};
+use crate::quads::QuadMesh;
+use crate::surface::Surface;
+use seamstress_mesh::attributes::{Attribute, AttributeDomain};
+use seamstress_quads::Transfer;
+
+impl Surface {
+    fn check(&self, attribute: &Attribute) -> Result<(), Error> {
+        let parts = self.parts();
+        let n_elements = match attribute.domain {
+            AttributeDomain::Vertex => parts.n_input_vertices,
+            AttributeDomain::Corner => parts.polygons.corners().len(),
+            AttributeDomain::Face => parts.polygons.len(),
+        };
+        attribute.check(n_elements).map_err(|text| Error::options(text).of(self.input()))
+    }
+
+    /// An attribute of the input as one of this surface's vertices, triangle corners or triangles.
+    pub(crate) fn on_triangles(&self, attribute: &Attribute) -> Attribute {
+        let parts = self.parts();
+        match attribute.domain {
+            AttributeDomain::Face => {
+                let faces = parts.face_origin.iter().map(|&face| face as usize);
+                attribute.on(AttributeDomain::Face, faces)
+            }
+            AttributeDomain::Vertex if parts.merged_into.is_none() => {
+                let vertices =
+                    (0..self.positions().len() as u32).filter_map(|v| self.input_vertex(v));
+                attribute.on(AttributeDomain::Vertex, vertices.map(|v| v as usize))
+            }
+            // Vertices that were merged may have had different values.
+            AttributeDomain::Vertex => {
+                let corners = parts.polygons.corners();
+                let vertices = self.input_corners().map(|corner| corners[corner] as usize);
+                self.simplified(attribute.on(AttributeDomain::Corner, vertices))
+            }
+            AttributeDomain::Corner => {
+                self.simplified(attribute.on(AttributeDomain::Corner, self.input_corners()))
+            }
+        }
+    }
+
+    /// As one of vertices, where all corners of each have the same values.
+    fn simplified(&self, of_corners: Attribute) -> Attribute {
+        let corners = self.faces().as_flattened();
+        of_corners.by_vertex(corners, self.positions().len()).unwrap_or(of_corners)
+    }
+
+    /// The corner of the input that each corner of the triangles is.
+    fn input_corners(&self) -> impl Iterator<Item = usize> {
+        let parts = self.parts();
+        let merged = parts.merged_into.as_deref();
+        let now = move |v: u32| merged.map_or(v, |into| into[v as usize]);
+        self.faces().iter().zip(&parts.face_origin).flat_map(move |(face, &polygon)| {
+            let first = parts.polygons.corner_start(polygon as usize);
+            let vertices = parts.polygons.get(polygon as usize).unwrap_or_default();
+            face.map(|v| {
+                let vertex = self.input_vertex(v).map(now);
+                let place = vertices.iter().position(|&other| Some(now(other)) == vertex);
+                first + place.unwrap_or_default()
+            })
+        })
+    }
+}
+
+impl QuadMesh {
+    /// Attributes of the input of the surface, brought over to the quads.
+    ///
+    /// Values of vertices are those of the surface where a vertex lies. A quad takes the values of its corners from one
+    /// side of a seam, the one that its middle lies on, continued linearly to corners beyond. Values of faces are those
+    /// of the triangles beneath a quad: the mean of numbers, of labels the one with the largest share. Labels are never
+    /// mixed.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`] where one does not fit the input.
+    pub fn transfer(&self, attributes: &[Attribute]) -> Result<Vec<Attribute>, Error> {
+        attributes.iter().try_for_each(|attribute| self.surface().check(attribute))?;
+        if attributes.is_empty() {
+            return Ok(Vec::new());
+        }
+        let surface = self.surface();
+        let triangles = (surface.positions(), surface.faces());
+        let transfer = Transfer::new(surface.mesh(), triangles, self.mesh(), self.sources());
+        let transfer = transfer.map_err(|cause| {
+            let text = format!("the quads were not found on their surface: {cause}");
+            Error::new(ErrorKind::Internal, text).of(surface.input())
+        })?;
+        let carry = |attribute: &Attribute| {
+            transfer.carry(&surface.on_triangles(attribute), attribute.domain)
+        };
+        Ok(attributes.iter().map(carry).collect())
+    }
+}
