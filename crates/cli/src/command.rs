@@ -6,7 +6,7 @@ use crate::job::{Cost, Job};
 use crate::output::{Kind, Plan, Target, is_standard_stream};
 use crate::summary;
 use crate::text::{self, as_options, listing, row};
-use seamstress::{Context, Error, Inspection, Surface, SurfaceOptions, listing as lines};
+use seamstress::{Context, Error, Inspection, Page, Surface, SurfaceOptions, listing as lines};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::{self, Read};
@@ -38,6 +38,11 @@ pub(crate) trait Command: Clone + Send + 'static {
     /// The pictures among its files, in their order.
     fn pictures(&self, _: &Self::Product) -> Result<Vec<Vec<u8>>, Error> {
         Ok(Vec::new())
+    }
+
+    /// A page to look at the result, if there is one.
+    fn page(&self, _: &Self::Product) -> Option<Page> {
+        None
     }
 
     /// Writes a file that is neither picture nor report.
@@ -153,29 +158,39 @@ fn work<C: Command>(command: &C, job: &Job, plan: &Plan) -> Result<Status, Failu
     }
     let input = command.input().display().to_string();
     let (owned, session) = (command.clone(), Session { context: job.context(), quiet: run.quiet });
-    let (product, pictures, drawing) = job.supervise(&input, move || {
+    let has_page = plan.targets.iter().any(|target| target.kind == Kind::Page);
+    let (product, pictures, page, drawing) = job.supervise(&input, move || {
         let product = owned.make(&session)?;
         let start = Instant::now();
         let pictures = owned.pictures(&product)?;
-        Ok((product, pictures, start.elapsed().as_secs_f64()))
+        let drawing = start.elapsed().as_secs_f64();
+        let page = if has_page { owned.page(&product) } else { None };
+        Ok((product, pictures, page, drawing))
     })?;
 
     let drawing = (!pictures.is_empty()).then_some(("pictures", drawing));
     let mut pictures = pictures.into_iter();
     let cost = job.cost();
-    let report = report_text(command, &product, plan, cost);
+    let report = report_of(command, &product, plan, cost);
+    let page = page.map(|page| page.of_run(report.clone(), Some(command_line())).html());
+    let report = serde_json::to_string_pretty(&report).unwrap_or_default();
     let mut batch = plan.begin()?;
     for target in &plan.targets {
-        let picture = match target.kind {
+        let content = match target.kind {
             Kind::Picture => match pictures.next() {
                 Some(picture) => picture,
                 // There was nothing to draw.
                 None => continue,
             },
+            Kind::Page => match &page {
+                Some(page) => page.clone().into_bytes(),
+                // There is nothing to look at.
+                None => continue,
+            },
             _ => Vec::new(),
         };
         batch.write(&target.path, |file| match target.kind {
-            Kind::Picture => file.write_all(&picture),
+            Kind::Picture | Kind::Page => file.write_all(&content),
             Kind::Report => writeln!(file, "{report}"),
             _ => command.write(&product, target, file),
         })?;
@@ -190,7 +205,7 @@ fn work<C: Command>(command: &C, job: &Job, plan: &Plan) -> Result<Status, Failu
     Ok(command.status(&product))
 }
 
-fn report_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: Cost) -> String {
+fn report_of<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: Cost) -> Value {
     let run = command.run_args();
     let mut value = command.report(product);
     value["command"] = C::NAME.into();
@@ -200,7 +215,18 @@ fn report_text<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost:
     });
     value["files"] = json!(plan.targets);
     value["cost"] = json!(cost);
-    serde_json::to_string_pretty(&value).unwrap_or_default()
+    value
+}
+
+/// The command line of this process, for a shell.
+fn command_line() -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+@%".contains(c);
+    let quoted = |word: std::ffi::OsString| match word.to_string_lossy() {
+        plain if !plain.is_empty() && plain.chars().all(is_plain) => plain.into_owned(),
+        other => format!("'{}'", other.replace('\'', "'\\''")),
+    };
+    let arguments = std::env::args_os().skip(1).map(quoted);
+    std::iter::once("seamstress".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 fn summary_text<C: Command>(

@@ -4,7 +4,7 @@ use crate::args::EXIT_CODES;
 use crate::command;
 use crate::commands::{
     CheckArgs, CompletionsArgs, ExtractArgs, FeaturesArgs, FieldArgs, IntegerArgs, LayoutQuadsArgs,
-    ManArgs, MapArgs, MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs,
+    ManArgs, MapArgs, MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs, ReportArgs,
 };
 use crate::failure::{Failure, Status};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -20,7 +20,8 @@ Examples:
   seamstress check bunny.ply bunny.obj
   seamstress measure bunny.ply bunny.obj --picture heat.png
   seamstress features part.obj --features angle:40 --picture part.png
-  seamstress extract grid.obj -o quads.obj";
+  seamstress extract grid.obj -o quads.obj
+  seamstress quad bunny.ply --quads 5000 -o quads.obj --report quads.html";
 
 /// Seamless parametrizations of triangle meshes, integer-grid maps and quad meshes
 ///
@@ -57,6 +58,7 @@ enum Chosen {
     Features(FeaturesArgs),
     Extract(ExtractArgs),
     Quality(QualityArgs),
+    Report(ReportArgs),
     /// Study and compare: other objectives, starts, solvers and ways of rounding
     ///
     /// `lab map` is `map` with all its options.
@@ -85,8 +87,8 @@ enum Lab {
 }
 
 /// What people use every day.
-const EVERYDAY: [&str; 8] =
-    ["map", "quad", "integer", "check", "measure", "features", "extract", "quality"];
+const EVERYDAY: [&str; 9] =
+    ["map", "quad", "integer", "check", "measure", "features", "extract", "quality", "report"];
 /// Options that only `lab map` shows.
 const RESEARCH: [&str; 18] = [
     "field",
@@ -151,6 +153,7 @@ impl CommandLine {
             Chosen::Features(args) => command::run(args),
             Chosen::Extract(args) => command::run(args),
             Chosen::Quality(args) => command::run(args),
+            Chosen::Report(args) => command::run(args),
             Chosen::Layout(args) | Chosen::Lab(Lab::Optimize(args)) => command::run(args),
             Chosen::Field(args) | Chosen::Lab(Lab::Field(args)) => command::run(args),
             Chosen::RepairMatchings(args) | Chosen::Lab(Lab::RepairMatchings(args)) => {

@@ -14,6 +14,8 @@ pub(crate) enum Kind {
     Map,
     Quads,
     Report,
+    Page,
+    Comparison,
     Cones,
     Field,
     Matching,
@@ -39,7 +41,14 @@ impl Target {
             Kind::Map => Output::Map,
             Kind::Quads => Output::Quads,
             Kind::Picture => Output::Picture,
-            Kind::Report | Kind::Cones | Kind::Field | Kind::Matching => return Ok(()),
+            Kind::Report
+            | Kind::Page
+            | Kind::Comparison
+            | Kind::Cones
+            | Kind::Field
+            | Kind::Matching => {
+                return Ok(());
+            }
         };
         Ok(output.check_name(&self.path)?)
     }

@@ -42,6 +42,7 @@
 //! |---|---|---|
 //! | `io` | yes | reading and writing files |
 //! | `render` | yes | pictures, drawn in software |
+//! | `page` | yes | results as pages to look at in a browser |
 //! | `parallel` | yes | threads |
 //! | `metis` | yes | nested dissection by METIS, in C; else the minimum-degree ordering of faer |
 //! | `clarabel` | yes | a second solver of conic programs, where ours fails |
@@ -74,6 +75,8 @@ mod map;
 mod mesh_format;
 mod optimize;
 mod options;
+#[cfg(feature = "page")]
+mod page;
 mod parts;
 #[cfg(feature = "render")]
 mod pictures;
@@ -113,6 +116,11 @@ pub use map::{MapReport, SeamlessMap};
 pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
+#[cfg(feature = "page")]
+pub use page::Page;
+#[cfg(feature = "page")]
+#[doc(hidden)]
+pub use page::{Explained, PageFacts};
 pub use parts::{PartOptions, PartReport, SmallParts};
 #[cfg(feature = "render")]
 pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};

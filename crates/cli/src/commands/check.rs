@@ -1,6 +1,6 @@
 //! `seamstress check`.
 
-use super::{inputs, targets};
+use super::{inputs, reports, targets};
 use crate::args::{FeatureArgs, RunArgs, after_help, not_negative};
 use crate::command::{Command, Session, read_mesh, to_json};
 use crate::failure::{Failure, Status};
@@ -9,7 +9,7 @@ use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::command_reports::{CheckReport, CheckedMapReport};
 use seamstress::{
-    CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Severity,
+    CertifyOptions, Error, FeatureCurves, Features, Finding, Inspection, MapFile, Page, Severity,
     Surface, SurfaceOptions, Verdict, ViewOptions, listing,
 };
 use serde_json::Value;
@@ -80,6 +80,10 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "FILE.png", conflicts_with = "map", group = "drawn")]
     picture: Option<PathBuf>,
 
+    /// Write everything to this file: a page to look at with a name in .html, else JSON; may be given several times
+    #[arg(long, value_name = "FILE")]
+    report: Vec<PathBuf>,
+
     /// Print everything as JSON on standard output, with all faults
     #[arg(long)]
     json: bool,
@@ -103,6 +107,7 @@ impl Checked {
 }
 
 struct CheckedMap {
+    file: MapFile,
     differences: Vec<Finding>,
     /// Of maps whose faces are those of the mesh.
     verdict: Option<Verdict>,
@@ -120,11 +125,11 @@ impl CheckArgs {
     }
 
     fn check_map(&self, surface: &Surface, path: &Path) -> Result<CheckedMap, Failure> {
-        let map = MapFile::read(path)?;
-        let differences = map.differences(surface);
-        let certify = || surface.certify_with(map.uvs(), map.face_uvs(), &self.options());
-        let verdict = map.require_faces_of(surface).is_ok().then(certify).transpose()?;
-        Ok(CheckedMap { differences, verdict })
+        let file = MapFile::read(path)?;
+        let differences = file.differences(surface);
+        let certify = || surface.certify_with(file.uvs(), file.face_uvs(), &self.options());
+        let verdict = file.require_faces_of(surface).is_ok().then(certify).transpose()?;
+        Ok(CheckedMap { file, differences, verdict })
     }
 }
 
@@ -206,8 +211,10 @@ impl Command for CheckArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        let files = targets(Kind::Picture, &self.picture);
-        Plan::new(&inputs(&self.mesh, self.features.files()), None, files)
+        let mut files = targets(Kind::Picture, &self.picture);
+        files.extend(reports(&self.report));
+        let others = self.map.as_deref().into_iter().chain(self.features.files());
+        Plan::new(&inputs(&self.mesh, others), None, files)
     }
 
     fn make(&self, session: &Session) -> Result<Checked, Failure> {
@@ -227,6 +234,17 @@ impl Command for CheckArgs {
             surface.picture(curves.as_ref(), &self.view)
         };
         checked.surface.iter().filter(|_| self.picture.is_some()).map(draw).collect()
+    }
+
+    fn page(&self, checked: &Checked) -> Option<Page> {
+        Some(match (&checked.surface, &checked.map) {
+            (Some((surface, curves)), Some(map)) => {
+                let uvs = (map.file.uvs(), map.file.face_uvs());
+                let found = (map.differences.as_slice(), map.verdict.as_ref());
+                Page::of_map(surface, uvs, found, curves.as_ref())
+            }
+            _ => Page::of_mesh(&checked.inspection, checked.curves()),
+        })
     }
 
     fn report(&self, checked: &Checked) -> Value {

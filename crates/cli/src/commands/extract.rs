@@ -8,7 +8,7 @@ use crate::output::{Plan, Target};
 use crate::summary;
 use seamstress::command_reports::ExtractReport;
 use seamstress::{
-    Error, ExtractionOptions, FeatureSource, Features, MapFile, QuadMesh, ViewOptions,
+    Error, ExtractionOptions, FeatureSource, Features, MapFile, Page, QuadMesh, ViewOptions,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -84,6 +84,10 @@ impl Command for ExtractArgs {
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
         self.files.pictures(quads, &self.view)
+    }
+
+    fn page(&self, quads: &QuadMesh) -> Option<Page> {
+        Some(quads.page())
     }
 
     fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn Write) -> io::Result<()> {

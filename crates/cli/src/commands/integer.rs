@@ -1,6 +1,6 @@
 //! `seamstress integer`.
 
-use super::{draw_map, inputs, map_pictures, targets};
+use super::{draw_map, inputs, map_pictures, reports, targets};
 use crate::args::{FeatureArgs, RunArgs, SizeArgs, after_help, not_negative};
 use crate::command::{Command, Session, to_json};
 use crate::failure::{Failure, Status};
@@ -9,7 +9,7 @@ use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
     CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
-    MapOptions, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions,
+    MapOptions, Page, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -54,9 +54,10 @@ pub(crate) struct IntegerArgs {
     #[command(flatten)]
     parts: PartOptions,
 
-    /// Write everything about the run to this JSON file
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    /// Write everything about the run to this file: a page to look at with a name in .html, else JSON; may be given
+    /// several times
+    #[arg(long, value_name = "FILE")]
+    report: Vec<PathBuf>,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
     #[arg(long, value_name = "DIR", group = "drawn")]
@@ -105,7 +106,7 @@ impl Command for IntegerArgs {
 
     fn plan(&self) -> Result<Plan, Failure> {
         let mut files = map_pictures(self.pictures.as_ref());
-        files.extend(targets(Kind::Report, &self.report));
+        files.extend(reports(&self.report));
         files.extend(targets(Kind::Map, [&self.output]));
         let given = self.map.as_deref().into_iter().chain(self.features.files());
         Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
@@ -134,6 +135,10 @@ impl Command for IntegerArgs {
 
     fn pictures(&self, map: &IntegerGridMap) -> Result<Vec<Vec<u8>>, Error> {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
+    }
+
+    fn page(&self, map: &IntegerGridMap) -> Option<Page> {
+        Some(map.page())
     }
 
     fn write(&self, map: &IntegerGridMap, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {

@@ -1,6 +1,6 @@
 //! `seamstress map`.
 
-use super::{draw_map, inputs, map_pictures, targets};
+use super::{draw_map, inputs, map_pictures, reports, targets};
 use crate::args::{FeatureArgs, RunArgs, after_help};
 use crate::command::{Command, Session, to_json};
 use crate::failure::Failure;
@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::lab::{LaidOut, MethodOptions};
-use seamstress::{Error, Features, SurfaceOptions, TextureOptions, write_cones};
+use seamstress::{Error, Features, Page, SurfaceOptions, TextureOptions, write_cones};
 use serde_json::Value;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -43,9 +43,10 @@ pub(crate) struct MapArgs {
     #[arg(short, long, value_name = "MAP.obj")]
     output: PathBuf,
 
-    /// Write everything about the run to this JSON file
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    /// Write everything about the run to this file: a page to look at with a name in .html, else JSON; may be given
+    /// several times
+    #[arg(long, value_name = "FILE")]
+    report: Vec<PathBuf>,
 
     /// Write front.png, back.png and layout.png to this folder, made if it does not exist
     #[arg(long, value_name = "DIR", group = "drawn")]
@@ -95,7 +96,7 @@ impl Command for MapArgs {
         self.options().validate().map_err(|error| Failure::Usage(as_options(error.message())))?;
         let mut files = map_pictures(self.pictures.as_ref());
         files.extend(targets(Kind::Cones, &self.sing));
-        files.extend(targets(Kind::Report, &self.report));
+        files.extend(reports(&self.report));
         files.extend(targets(Kind::Map, [&self.output]));
         let given = self.method.start.files().chain(self.features.files());
         Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
@@ -112,6 +113,13 @@ impl Command for MapArgs {
                 draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
             }
             LaidOut::Uncertified(_) => Ok(Vec::new()),
+        }
+    }
+
+    fn page(&self, product: &LaidOut) -> Option<Page> {
+        match product {
+            LaidOut::Certified(map) => Some(map.page()),
+            LaidOut::Uncertified(_) => None,
         }
     }
 

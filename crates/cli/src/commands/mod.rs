@@ -14,6 +14,7 @@ mod optimize;
 mod quad;
 mod quad_files;
 mod quality;
+mod report;
 
 pub(crate) use check::CheckArgs;
 pub(crate) use extract::ExtractArgs;
@@ -28,6 +29,7 @@ pub(crate) use measure::MeasureArgs;
 pub(crate) use optimize::OptimizeArgs;
 pub(crate) use quad::QuadArgs;
 pub(crate) use quality::QualityArgs;
+pub(crate) use report::ReportArgs;
 
 use crate::output::{Kind, Target};
 use seamstress::{Error, MapPictures, Measure};
@@ -57,6 +59,17 @@ fn draw_map(
 /// Files of one kind.
 fn targets<'a>(kind: Kind, paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Target> {
     paths.into_iter().map(|path| Target::new(kind, path)).collect()
+}
+
+/// Reports: pages where the name says HTML, JSON else.
+fn reports<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Target> {
+    let is_page = |path: &Path| {
+        path.extension().is_some_and(|ending| {
+            ["html", "htm"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+        })
+    };
+    let kind = |path: &Path| if is_page(path) { Kind::Page } else { Kind::Report };
+    paths.into_iter().map(|path| Target::new(kind(path), path)).collect()
 }
 
 /// The inputs of a run.

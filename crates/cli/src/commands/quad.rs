@@ -8,8 +8,8 @@ use crate::output::{Plan, Target};
 use crate::summary;
 use crate::text::row;
 use seamstress::{
-    Error, Features, MapOptions, PartOptions, QuadMesh, QuadOptions, ShapeOptions, SurfaceOptions,
-    ViewOptions,
+    Error, Features, MapOptions, Page, PartOptions, QuadMesh, QuadOptions, ShapeOptions,
+    SurfaceOptions, ViewOptions,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -96,6 +96,10 @@ impl Command for QuadArgs {
 
     fn pictures(&self, quads: &QuadMesh) -> Result<Vec<Vec<u8>>, Error> {
         self.files.pictures(quads, &self.view)
+    }
+
+    fn page(&self, quads: &QuadMesh) -> Option<Page> {
+        Some(quads.page())
     }
 
     fn write(&self, quads: &QuadMesh, target: &Target, file: &mut dyn Write) -> io::Result<()> {

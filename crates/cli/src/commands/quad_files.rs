@@ -1,6 +1,6 @@
 //! The files that commands write which make quads.
 
-use super::{inputs, targets};
+use super::{inputs, reports, targets};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
 use seamstress::{Error, QuadMesh, ViewOptions};
@@ -17,9 +17,10 @@ pub(super) struct QuadFiles {
     #[arg(short, long, value_name = "QUADS")]
     output: PathBuf,
 
-    /// Write everything about the run to this JSON file
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    /// Write everything about the run to this file: a page to look at with a name in .html, else JSON; may be given
+    /// several times
+    #[arg(long, value_name = "FILE")]
+    report: Vec<PathBuf>,
 
     /// Write a picture of the quad mesh with its irregular vertices to this PNG file
     #[arg(long, value_name = "FILE.png", group = "drawn")]
@@ -33,7 +34,7 @@ impl QuadFiles {
         others: impl IntoIterator<Item = &'a Path>,
     ) -> Result<Plan, Failure> {
         let mut files = targets(Kind::Picture, &self.picture);
-        files.extend(targets(Kind::Report, &self.report));
+        files.extend(reports(&self.report));
         files.extend(targets(Kind::Quads, [&self.output]));
         Plan::new(&inputs(input, others), None, files)
     }

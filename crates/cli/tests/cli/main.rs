@@ -13,6 +13,7 @@ mod harness;
 mod integer;
 mod layout;
 mod map;
+mod pages;
 mod quad;
 mod quads;
 mod texts;

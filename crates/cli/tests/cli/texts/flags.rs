@@ -4,7 +4,7 @@ use crate::harness::Folder;
 
 /// Every command with all its flags.
 #[rustfmt::skip]
-pub(super) const COMMANDS: [(&str, &[&str]); 11] = [
+pub(super) const COMMANDS: [(&str, &[&str]); 12] = [
     ("map", &["--align-boundary", "--allow-flips", "--batch", "--cone-bias", "--cone-price", "--cones",
         "--corner-weight", "--exact", "--features", "--features-strict", "--field", "--free-cones", "--from",
         "--json", "--local-global", "--matching", "--max-energy-rise", "--method", "--no-tau-polish", "--nodes",
@@ -18,7 +18,7 @@ pub(super) const COMMANDS: [(&str, &[&str]); 11] = [
         "--json", "--output", "--pictures", "--quads", "--quiet", "--repair", "--report", "--rounding", "--scale",
         "--texture-angle", "--texture-period", "--texture-shift", "--threads", "--time-limit", "--tolerance"]),
     ("check", &["--align-boundary", "--alignment-tolerance", "--features", "--json", "--picture",
-        "--repair", "--tolerance"]),
+        "--repair", "--report", "--tolerance"]),
     ("extract", &["--best-effort", "--features", "--json", "--output", "--picture", "--quiet", "--raw",
         "--report", "--smooth", "--threads", "--time-limit", "--tolerance"]),
     ("field", &["--json", "--matching", "--output", "--repair", "--sing", "--tolerance"]),
@@ -27,6 +27,7 @@ pub(super) const COMMANDS: [(&str, &[&str]); 11] = [
     ("layout-quads", &["--json", "--method", "--output", "--pictures", "--texture-angle",
         "--texture-period", "--texture-shift"]),
     ("quality", &["--json", "--of", "--picture", "--samples", "--source"]),
+    ("report", &["--json", "--output"]),
     ("measure", &["--json", "--of", "--picture", "--repair", "--tolerance"]),
     ("layout", &["--align-boundary", "--anisotropy", "--features", "--features-strict", "--json",
         "--objective", "--output", "--pictures", "--quiet", "--repair", "--report", "--solver", "--texture-angle",
@@ -60,7 +61,9 @@ fn the_command_line_is_consistent() {
 #[test]
 fn everyday_commands_show_few_options() {
     let is_shown = |arg: &&clap::Arg| !(arg.is_hide_set() || arg.is_hide_short_help_set());
-    for name in ["map", "quad", "integer", "check", "measure", "features", "extract", "quality"] {
+    for name in
+        ["map", "quad", "integer", "check", "measure", "features", "extract", "quality", "report"]
+    {
         let command = seamstress_cli::definition();
         let options = command.find_subcommand(name).unwrap().get_opts();
         let shown = options.filter(is_shown).count();

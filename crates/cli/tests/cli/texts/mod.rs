@@ -44,7 +44,7 @@ fn folder() -> Folder {
 }
 
 /// Commands that the help lists.
-const HELP: [&str; 16] = [
+const HELP: [&str; 17] = [
     "map",
     "quad",
     "integer",
@@ -53,6 +53,7 @@ const HELP: [&str; 16] = [
     "features",
     "extract",
     "quality",
+    "report",
     "lab",
     "lab map",
     "lab optimize",
