@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator that says what is wrong with meshes and maps, and shows where."""
+
+from collections import Counter
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.app.translations import pgettext_rpt as rpt
+from bpy.props import BoolProperty, FloatProperty
+
+from . import reading
+from .reading import Geometry, Unfit
+from .running import Running, Task
+from .summary import PROPERTY, Summary
+from .targets import Target
+from .unwrapping import are_edges
+
+
+class SEAMSTRESS_OT_check(Running, bpy.types.Operator):
+    """Check whether the selected meshes are oriented manifolds, and whether their active UV map is seamless; select what \
+is wrong in edit mode"""
+
+    bl_idname = "seamstress.check"
+    bl_label = "Check"
+    bl_options = {"REGISTER", "UNDO"}
+
+    use_map: BoolProperty(name="UV Map", description="Check whether the active UV map is seamless", default=True)
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="How far the sides of a seam may be apart, in lengths of the edge. UV maps have few digits",
+        default=1e-4,
+        min=1e-9,
+        max=1e-2,
+        precision=6,
+    )
+
+    def task(self, context: bpy.types.Context, objects: list[bpy.types.Object]) -> Task:
+        object = objects[0]
+        mesh = object.data
+        if not mesh.polygons:
+            raise Unfit(rpt("{} has no faces").format(object.name))
+        geometry = reading.read(mesh, reading.linear_part(object))
+        layer = mesh.uv_layers.active if self.use_map else None
+        uv = None if layer is None else reading.values(layer.uv, "vector", 2).astype(float)
+        arguments = {"mesh": geometry.arrays(), "uv": uv, "tolerance": self.tolerance}
+        target = Target.of(object)
+        return Task(object.name, "check", arguments, lambda result: self._show(target.object(), geometry, result))
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Goes into edit mode if there is something to see."""
+        found = getattr(self, "_found", [])
+        super().end(context)
+        if found and context.mode == "OBJECT":
+            for object in context.view_layer.objects:
+                object.select_set(object in found)
+            context.view_layer.objects.active = found[0]
+            bpy.ops.object.mode_set(mode="EDIT")
+        self._found = []
+
+    def _show(self, object: bpy.types.Object, geometry: Geometry, result: dict[str, Any]) -> str:
+        mesh = object.data
+        findings, report = result["findings"], result["report"]
+        if report is not None and report["certified"]:
+            summary = Summary.of_map(report)
+            summary.store(mesh)
+            return f"{summary.title}, {summary.text()}"
+        if PROPERTY in mesh:
+            del mesh[PROPERTY]
+        if not findings:
+            if result["message"] is not None:
+                raise Unfit(result["message"])
+            return rpt("an oriented manifold")
+        select(mesh, geometry, findings)
+        self._found = [*getattr(self, "_found", []), object]
+        kinds = Counter(finding["kind"] for finding in findings)
+        named = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
+        what = rpt("the UV map is not seamless") if report is not None else rpt("not an oriented manifold")
+        if all(finding["severity"] == "warning" for finding in findings):
+            what = rpt("an oriented manifold, with remarks")
+        return f"{what}: {named}"
+
+
+def select(mesh: bpy.types.Mesh, geometry: Geometry, findings: list[dict[str, Any]]) -> None:
+    """Selects the elements of findings and nothing else: the smallest that each names."""
+    vertices = np.zeros(len(mesh.vertices), bool)
+    edges = np.zeros(len(mesh.edges), bool)
+    faces = np.zeros(len(mesh.polygons), bool)
+    pairs = []
+    for finding in findings:
+        elements = finding.get("elements") or {}
+        if elements.get("edges"):
+            pairs += elements["edges"]
+        elif elements.get("faces"):
+            faces[elements["faces"]] = True
+        else:
+            vertices[elements.get("vertices", [])] = True
+    if pairs:
+        edges |= are_edges(geometry, np.array(pairs))
+    # Selection of Blender: edges have their ends, faces have both.
+    corner_faces = np.repeat(np.arange(len(faces)), geometry.sizes)
+    edges[geometry.corner_edges[faces[corner_faces]]] = True
+    vertices[geometry.edges[edges].ravel()] = True
+    mesh.polygons.foreach_set("select", faces)
+    mesh.edges.foreach_set("select", edges)
+    mesh.vertices.foreach_set("select", vertices)
+    mesh.update()

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+held = bpy.context.scene.seamstress.quads
+
+held.creases = "AUTO"
+held.marks = {"SHARP", "CREASE", "BEVEL", "MATERIAL"}
+held.cone_bias = 0.5
+held.smooth = 0

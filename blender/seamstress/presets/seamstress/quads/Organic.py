@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+held = bpy.context.scene.seamstress.quads
+
+held.creases = "NONE"
+held.use_boundary = True
+held.marks = {"MATERIAL"}
+held.cone_bias = 0.5
+held.smooth = 5

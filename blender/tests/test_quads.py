@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Quad Remesh: counts, features, modifiers, transforms, modes, several objects."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+import shapes
+
+
+def quads(**settings: object) -> bpy.types.Object:
+    """Runs the operator; the active object after it."""
+    assert bpy.ops.seamstress.quads(**settings) == {"FINISHED"}
+    return bpy.context.object
+
+
+def near(found: float, wanted: float, share: float) -> bool:
+    return abs(found - wanted) <= share * wanted
+
+
+@pytest.mark.parametrize("asked", [600, 2000])
+def test_count_of_a_monkey(asked: int) -> None:
+    source = shapes.monkey()
+    made = quads(faces=asked)
+    assert near(len(made.data.polygons), asked, 0.1)
+    assert shapes.are_quads(made.data)
+    assert made.name == "Suzanne quads" and made is not source
+    assert source.hide_get() and source.hide_render and len(source.data.polygons) == 500
+    assert made.select_get() and not source.select_get()
+
+
+def test_targets_agree() -> None:
+    shapes.cube()
+    by_length = quads(target="EDGE", edge_length=0.2, original="REPLACE")
+    assert near(len(by_length.data.polygons), 600, 0.1)
+    shapes.cube()
+    by_ratio = quads(target="RATIO", ratio=0.5, original="REPLACE")
+    assert near(len(by_ratio.data.polygons), 432, 0.1)
+
+
+def test_borders_are_kept() -> None:
+    shapes.grid(16, hole=(4, 4, 8, 10))
+    made = quads(faces=300, creases="NONE")
+    assert near(len(made.data.polygons), 300, 0.1)
+    assert near(shapes.areas(made.data).sum(), 4.0 - 0.5 * 0.75, 1e-5)
+    assert near(shapes.edge_length(made, shapes.border_edges(made.data)), 8.0 + 2.5, 1e-5)
+
+
+def test_modifiers_are_applied_or_kept() -> None:
+    source = shapes.cube(cuts=3)
+    modifier = source.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = 2
+    applied = quads(faces=400)
+    assert len(applied.modifiers) == 0 and len(source.modifiers) == 1
+    assert shapes.areas(applied.data).sum() < 23.0
+    shapes.select(source)
+    source.hide_set(False)
+    shapes.select(source)
+    kept = quads(faces=400, use_modifiers=False)
+    assert [modifier.type for modifier in kept.modifiers] == ["SUBSURF"]
+    assert near(shapes.areas(kept.data).sum(), 24.0, 1e-3)
+
+
+def test_scale_is_respected() -> None:
+    """Quads are square in the world, and the object stays where it is."""
+    source = shapes.grid(10)
+    source.scale = (4.0, 1.0, 1.0)
+    source.rotation_euler = (0.3, 0.2, 0.1)
+    source.location = (5.0, 6.0, 7.0)
+    bpy.context.view_layer.update()
+    corners = shapes.world(source)
+    made = quads(target="EDGE", edge_length=0.25)
+    bpy.context.view_layer.update()
+    assert made.matrix_world == source.matrix_world
+    assert near(len(made.data.polygons), 16.0 / 0.0625, 0.1)
+    places = shapes.world(made)
+    assert np.allclose(places.min(axis=0), corners.min(axis=0), atol=1e-4)
+    assert np.allclose(places.max(axis=0), corners.max(axis=0), atol=1e-4)
+    ends = places[np.array([edge.vertices[:] for edge in made.data.edges])]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    assert lengths.max() < 1.3 * lengths.min()
+
+
+def test_mirrored_objects_keep_their_outside() -> None:
+    source = shapes.cube()
+    source.scale = (-1.0, 1.0, 2.0)
+    bpy.context.view_layer.update()
+    made = quads(faces=400)
+    outwards = [polygon.normal.dot(polygon.center) for polygon in made.data.polygons]
+    assert min(outwards) > 0.9
+
+
+def test_flat_objects_are_refused() -> None:
+    source = shapes.cube()
+    source.scale = (1.0, 0.0, 1.0)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="Cube has a scale of zero along an axis"):
+        bpy.ops.seamstress.quads(faces=400)
+
+
+def test_meshes_without_faces_are_refused() -> None:
+    shapes.added("Empty", np.empty((0, 3)), [])
+    with pytest.raises(RuntimeError, match="Empty has no faces"):
+        bpy.ops.seamstress.quads(faces=400)
+    shapes.added("Wire", [(0, 0, 0), (1, 0, 0)], [])
+    with pytest.raises(RuntimeError, match="Wire has no faces"):
+        bpy.ops.seamstress.quads(faces=400)
+    assert len(bpy.data.objects) == 2
+
+
+def non_manifold() -> bpy.types.Object:
+    """Three sheets that meet at a line."""
+    line = np.linspace(0.0, 1.0, 5)
+    vertices, faces = [], []
+    for turn in range(3):
+        way = np.array([np.cos(turn * 2.0), np.sin(turn * 2.0)])
+        for u in line:
+            vertices += [(*(u * way), z) for z in line]
+    first = {}
+    merged = [first.setdefault(tuple(np.round(vertex, 9)), len(first)) for vertex in vertices]
+    for turn in range(3):
+        at = lambda i, j, turn=turn: merged[turn * 25 + i * 5 + j]  # noqa: E731
+        faces += [(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)) for i in range(4) for j in range(4)]
+    return shapes.added("Sheets", list(first), faces)
+
+
+def test_non_manifold_meshes_are_repaired_or_refused() -> None:
+    non_manifold()
+    with pytest.raises(RuntimeError, match="edge .* has 3 faces"):
+        bpy.ops.seamstress.quads(faces=100, use_repair=False)
+    made = quads(faces=100)
+    assert near(len(made.data.polygons), 100, 0.1)
+    assert near(shapes.areas(made.data).sum(), 3.0, 1e-4)
+
+
+def test_edit_mode_is_left_and_entered_again() -> None:
+    source = shapes.monkey()
+    bpy.ops.object.mode_set(mode="EDIT")
+    made = quads(faces=600, original="REPLACE")
+    assert made is source and made.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert near(len(made.data.polygons), 600, 0.1)
+
+
+def test_edits_count_before_edit_mode_is_left() -> None:
+    shapes.grid(8)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.transform.resize(value=(3.0, 1.0, 1.0))
+    made = quads(faces=100)
+    assert near(np.ptp(shapes.positions(made.data)[:, 0]), 6.0, 1e-3)
+
+
+def test_undo_brings_the_mesh_back() -> None:
+    shapes.monkey()
+    bpy.ops.ed.undo_push(message="before")
+    quads(faces=600, original="REPLACE")
+    bpy.ops.ed.undo_push(message="after")
+    assert near(len(bpy.data.objects["Suzanne"].data.polygons), 600, 0.1)
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects["Suzanne"].data.polygons) == 500
+    bpy.ops.ed.redo()
+    assert near(len(bpy.data.objects["Suzanne"].data.polygons), 600, 0.1)
+
+
+def test_several_objects_and_shared_meshes() -> None:
+    monkey, cube = shapes.monkey(), shapes.cube()
+    twin = monkey.copy()
+    bpy.context.collection.objects.link(twin)
+    other = monkey.copy()
+    bpy.context.collection.objects.link(other)
+    shapes.select(monkey, cube, twin)
+    quads(faces=500, original="REPLACE")
+    assert monkey.data is twin.data is other.data
+    assert monkey.data.name == "Suzanne" and [mesh.name for mesh in bpy.data.meshes].count("Suzanne") == 1
+    for object in (monkey, cube):
+        assert near(len(object.data.polygons), 500, 0.1)
+
+
+def test_shared_meshes_of_which_one_has_modifiers() -> None:
+    plain = shapes.cube(cuts=3)
+    smooth = plain.copy()
+    bpy.context.collection.objects.link(smooth)
+    smooth.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    plain.shape_key_add(name="Basis")
+    shapes.select(plain, smooth)
+    quads(faces=500, original="REPLACE")
+    assert plain.data is not smooth.data and not smooth.modifiers
+    assert near(shapes.areas(plain.data).sum(), 24.0, 1e-3) and shapes.areas(smooth.data).sum() < 23.0
+    assert plain.data.shape_keys is not None and smooth.data.shape_keys is None
+
+
+def test_new_objects_of_shared_meshes_share_theirs() -> None:
+    monkey = shapes.monkey()
+    twin = monkey.copy()
+    bpy.context.collection.objects.link(twin)
+    shapes.select(monkey, twin)
+    quads(faces=500)
+    made = bpy.context.selected_objects
+    assert len(made) == 2 and made[0].data is made[1].data is not monkey.data
+
+
+def test_one_failure_leaves_the_others() -> None:
+    monkey, flat = shapes.monkey(), shapes.grid(4)
+    flat.scale = (1.0, 0.0, 1.0)
+    shapes.select(monkey, flat)
+    bpy.context.view_layer.update()
+    assert bpy.ops.seamstress.quads(faces=500, original="REPLACE") == {"FINISHED"}
+    assert near(len(monkey.data.polygons), 500, 0.1) and len(flat.data.polygons) == 16
+
+
+def test_instances_of_collections() -> None:
+    collection = bpy.data.collections.new("Part")
+    source = shapes.monkey()
+    bpy.context.collection.objects.unlink(source)
+    collection.objects.link(source)
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.collection.objects.link(instance)
+    shapes.select(instance)
+    assert bpy.ops.seamstress.quads(faces=500, original="REPLACE") == {"FINISHED"}
+    assert near(len(source.data.polygons), 500, 0.1)
+    assert bpy.ops.seamstress.quads(faces=300, original="HIDE") == {"FINISHED"}
+    assert source.hide_viewport and [object.hide_viewport for object in collection.objects] == [True, False]
+
+
+@pytest.mark.parametrize("axes", [{"X"}, {"X", "Y"}])
+def test_symmetry(axes: set[str]) -> None:
+    shapes.monkey()
+    made = quads(faces=800, symmetry=axes)
+    assert shapes.are_quads(made.data)
+    assert near(len(made.data.polygons), 800, 0.1)
+    places = {tuple(place) for place in shapes.positions(made.data).round(5) + 0.0}
+    for axis in axes:
+        sign = np.array([-1.0 if name == axis else 1.0 for name in "XYZ"])
+        assert places == {tuple(place) for place in np.array(list(places)) * sign + 0.0}
+    # The sides are joined: as many pieces as before, which are the head and the eyes.
+    if axes == {"X"}:
+        assert pieces(made.data) == 3
+
+
+def pieces(mesh: bpy.types.Mesh) -> int:
+    root = list(range(len(mesh.vertices)))
+
+    def find(a: int) -> int:
+        while root[a] != a:
+            a = root[a]
+        return a
+
+    for edge in mesh.edges:
+        a, b = (find(vertex) for vertex in edge.vertices)
+        root[max(a, b)] = min(a, b)
+    return len({find(vertex) for vertex in range(len(root))})
+
+
+def test_an_object_changed_meanwhile_stays() -> None:
+    from seamstress.reading import Unfit
+    from seamstress.targets import Target
+
+    source = shapes.monkey()
+    target = Target.of(source)
+    assert target.object() is source
+    source.data.vertices[0].co.x += 1.0
+    with pytest.raises(Unfit, match="Suzanne was changed meanwhile"):
+        target.object()
+    bpy.data.objects.remove(source)
+    with pytest.raises(Unfit, match="Suzanne was removed meanwhile"):
+        target.object()
