@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests the extension in Blender as a module: ``python check.py [-k PATTERN]``.
 
-Builds the wheel, makes an environment with `bpy` from PyPI in `target/python`, and runs the tests there. Says so and ends
+Builds the wheel, makes environments with `bpy` from PyPI in `target/python`, and runs the tests there. Says so and ends
 well where no `bpy` fits: it is for one version of Python, and for few systems.
 """
 
@@ -19,8 +19,8 @@ sys.path.insert(0, str(ROOT / "crates" / "python"))
 
 from check import FOLDER, TOOLS, environment, run  # noqa: E402
 
-#: Blender with long-term support, the Python that it is for, and what it needs.
-BLENDER = "4.5"
+#: Blender with long-term support, the oldest that the extension is for, and the newest for the same Python.
+BLENDERS = ["4.5", "4.2", "5.0"]
 PYTHON = "3.11"
 NEEDS = ["numpy<2", "cython", "requests", "zstandard", "pytest", "pillow"]
 
@@ -36,42 +36,44 @@ def fitting() -> Path | None:
     return None
 
 
-def blender() -> Path | None:
+def blender(version: str) -> Path | None:
     """The interpreter of an environment with Blender as a module; none where there is none for this machine."""
     base = fitting()
     if base is None:
-        print(f"SKIPPED: Blender {BLENDER} as a module needs Python {PYTHON}, which was not found")
+        print(f"SKIPPED: Blender {version} as a module needs Python {PYTHON}, which was not found")
         return None
-    python = environment("blender", NEEDS, base)
+    python = environment(f"blender-{version}", NEEDS, base)
     # Without its requirements, which let NumPy be too new for it.
-    command = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", f"bpy=={BLENDER}.*"]
+    command = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", f"bpy=={version}.*"]
     if subprocess.run(command).returncode != 0:
-        print(f"SKIPPED: PyPI has no bpy {BLENDER} for this machine")
+        print(f"SKIPPED: PyPI has no bpy {version} for this machine")
         return None
     return python
 
 
-def prepared() -> tuple[Path, Path, dict[str, str]] | None:
-    """The interpreter with Blender, the wheel, and the variables with which Python finds what is in it."""
-    python = blender()
-    if python is None:
-        return None
+def variables() -> dict[str, str]:
+    """The wheel, built, as the tests and Python find it."""
+    tools = environment("tools", TOOLS)
     wheels, site = FOLDER / "wheels", FOLDER / "blender-site"
-    run(environment("tools", TOOLS), ROOT / "crates" / "python" / "build.py", "--native", wheels)
+    run(tools, ROOT / "crates" / "python" / "build.py", "--native", wheels)
     wheel = next(wheels.glob("*.whl"))
-    # Beside the environment, since a Blender that has nothing is to install the package.
+    # Beside the environments, since a Blender that has nothing is to install the package.
     shutil.rmtree(site, ignore_errors=True)
-    run(python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", "--target", site, wheel)
-    return python, wheel, {**os.environ, "PYTHONPATH": str(site), "SEAMSTRESS_WHEEL": str(wheel)}
+    run(tools, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", "--target", site, wheel)
+    return {**os.environ, "PYTHONPATH": str(site), "SEAMSTRESS_WHEEL": str(wheel)}
 
 
-def main() -> int:
-    made = prepared()
-    if made is None:
-        return 0
-    python, _, variables = made
-    return subprocess.run([python, "-m", "pytest", "-q", "tests", *sys.argv[1:]], cwd=HERE, env=variables).returncode
+def main() -> None:
+    found = {version: python for version in BLENDERS if (python := blender(version)) is not None}
+    if not found:
+        return
+    given = variables()
+    for version, python in found.items():
+        print(f"== Blender {version}", flush=True)
+        done = subprocess.run([python, "-m", "pytest", "-q", "tests", *sys.argv[1:]], cwd=HERE, env=given)
+        if done.returncode != 0:
+            raise SystemExit(done.returncode)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -30,13 +30,12 @@ CLAY, TEAL = (0.72, 0.36, 0.20, 1.0), (0.12, 0.42, 0.45, 1.0)
 def main() -> int:
     """Runs this file again in Blender."""
     sys.path.insert(0, str(HERE))
-    from check import prepared
+    from check import BLENDERS, blender, variables
 
-    made = prepared()
-    if made is None:
+    python = blender(BLENDERS[0])
+    if python is None:
         return 1
-    python, _, variables = made
-    return subprocess.run([python, __file__, "--inside", *sys.argv[1:]], env=variables).returncode
+    return subprocess.run([python, __file__, "--inside", *sys.argv[1:]], env=variables()).returncode
 
 
 def material(name: str, color: tuple[float, ...]):

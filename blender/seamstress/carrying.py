@@ -134,13 +134,13 @@ def marks_along(carried: Carried, geometry: Geometry, positions: np.ndarray, edg
     """The marks of each of the edges (e, 2) between positions, for each attribute of edges; zero off marked edges."""
     beside: dict[bytes, np.ndarray] = {}
     marks = []
-    for _, _, values in carried.edges:
-        is_marked = (values != 0.0) & geometry.is_used
+    for _, _, of_edges in carried.edges:
+        is_marked = (of_edges != 0.0) & geometry.is_used
         key = is_marked.tobytes()
         if key not in beside:
             beside[key] = edges_beside(geometry, np.flatnonzero(is_marked), positions, edges)
         found = beside[key]
-        marks.append(np.where(found[:, 0] < 0, 0.0, np.median(values[found], axis=1)))
+        marks.append(np.where(found[:, 0] < 0, 0.0, np.median(of_edges[found], axis=1)))
     return marks
 
 

@@ -5,16 +5,15 @@ from collections import Counter
 from typing import Any
 
 import bpy
-import numpy as np
 from bpy.app.translations import pgettext_rpt as rpt
 from bpy.props import BoolProperty, FloatProperty
 
 from . import reading
 from .reading import Geometry, Unfit
 from .running import Running, Task
+from .selecting import select_findings
 from .summary import PROPERTY, Summary
 from .targets import Target
-from .unwrapping import are_edges
 
 
 class SEAMSTRESS_OT_check(Running, bpy.types.Operator):
@@ -71,37 +70,11 @@ is wrong in edit mode"""
             if result["message"] is not None:
                 raise Unfit(result["message"])
             return rpt("an oriented manifold")
-        select(mesh, geometry, findings)
+        select_findings(mesh, geometry, findings)
         self._found = [*getattr(self, "_found", []), object]
         kinds = Counter(finding["kind"] for finding in findings)
-        named = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
+        named = ", ".join(f"{count} {kind.replace('-', ' ')}" for kind, count in kinds.most_common())
         what = rpt("the UV map is not seamless") if report is not None else rpt("not an oriented manifold")
         if all(finding["severity"] == "warning" for finding in findings):
             what = rpt("an oriented manifold, with remarks")
         return f"{what}: {named}"
-
-
-def select(mesh: bpy.types.Mesh, geometry: Geometry, findings: list[dict[str, Any]]) -> None:
-    """Selects the elements of findings and nothing else: the smallest that each names."""
-    vertices = np.zeros(len(mesh.vertices), bool)
-    edges = np.zeros(len(mesh.edges), bool)
-    faces = np.zeros(len(mesh.polygons), bool)
-    pairs = []
-    for finding in findings:
-        elements = finding.get("elements") or {}
-        if elements.get("edges"):
-            pairs += elements["edges"]
-        elif elements.get("faces"):
-            faces[elements["faces"]] = True
-        else:
-            vertices[elements.get("vertices", [])] = True
-    if pairs:
-        edges |= are_edges(geometry, np.array(pairs))
-    # Selection of Blender: edges have their ends, faces have both.
-    corner_faces = np.repeat(np.arange(len(faces)), geometry.sizes)
-    edges[geometry.corner_edges[faces[corner_faces]]] = True
-    vertices[geometry.edges[edges].ravel()] = True
-    mesh.polygons.foreach_set("select", faces)
-    mesh.edges.foreach_set("select", edges)
-    mesh.vertices.foreach_set("select", vertices)
-    mesh.update()

@@ -12,7 +12,8 @@ from . import carrying, reading, settings, symmetry
 from .carrying import Carried
 from .reading import Geometry, Unfit
 from .running import Running, Task, selected
-from .summary import Summary, dropped_text, repairs_text
+from .selecting import drop_broken, select_edges
+from .summary import Summary, dropped_edges, dropped_text, repairs_text
 from .targets import Target
 
 
@@ -93,6 +94,7 @@ attributes. Runs beside Blender; Esc stops it"""
         has_keys = old.shape_keys is not None
         mesh = bpy.data.meshes.new(old.name)
         mesh.from_pydata(made.positions, [], made.faces, shade_flat=not self.use_attributes)
+        drop_broken(mesh)
         for material in old.materials:
             mesh.materials.append(material)
         edges = made.origin[reading.values(mesh.edges, "vertices", 2, np.int32)]
@@ -100,11 +102,16 @@ attributes. Runs beside Blender; Esc stops it"""
         carrying.put(made.carried, marks, mesh)
         summary = Summary.of_quads(mesh, result["report"])
         summary.store(mesh)
+        dropped = [] if applies or axes else dropped_edges(result["report"])
+        if dropped:
+            select_edges(old, geometry, dropped)
         place = self._replaced if self.original == "REPLACE" else beside
         new = place(objects, mesh, applies)
         carrying.give_groups(made.carried, new)
         carrying.give_keys(made.carried, new, made.positions)
         texts = [summary.text(), dropped_text(result["report"]), repairs_text(result["report"])]
+        if dropped and self.original == "HIDE":
+            texts.append(rpt("the original has them selected"))
         if applies and has_keys and self.use_attributes:
             texts.append(rpt("its shape keys were applied with the modifiers"))
         if carried.left_out:

@@ -25,12 +25,12 @@ class Summary:
     def of_quads(cls, mesh: bpy.types.Mesh, report: dict[str, Any]) -> Summary:
         """Of a quad mesh. Mirrored sides count."""
         sides = len(mesh.polygons) / max(report["quads"]["count"], 1)
-        certificate = report["integer_certificate"]
+        features = report.get("features") or {"edges": 0, "kept": 0}
         figures = {
             rpt("Quads"): f"{len(mesh.polygons):,}",
             rpt("Irregular vertices"): f"{round(report['quads']['irregular']['count'] * sides):,}",
             rpt("Manifold"): rpt("yes") if report["quads"]["is_manifold"] else rpt("no"),
-            rpt("Edges followed"): f"{certificate['isoline_edges']:,}",
+            rpt("Edges followed"): f"{features['kept']:,} {rpt('of')} {features['edges']:,}",
             rpt("Inverted quads"): f"{report['orientation']['inverted']:,}",
         }
         return cls(rpt("Quad mesh"), figures)
@@ -72,13 +72,17 @@ class Summary:
         return cls(kept["title"], figures)
 
 
+def dropped_edges(report: dict[str, Any]) -> list[list[int]]:
+    """The edges that could not be followed, by their ends."""
+    return [edge["vertices"] for edge in (report.get("features") or {}).get("dropped") or []]
+
+
 def dropped_text(report: dict[str, Any]) -> str:
-    """The edges that could not be followed, and why; empty if there are none."""
-    features = report.get("features") or {}
-    reasons = Counter(edge.get("reason", "") for edge in features.get("dropped", []))
+    """How many edges could not be followed, and why; empty if there are none."""
+    reasons = Counter(edge["reason"].replace("-", " ") for edge in (report.get("features") or {}).get("dropped") or [])
     if not reasons:
         return ""
-    named = ", ".join(f"{count} {reason}".strip() for reason, count in reasons.most_common())
+    named = ", ".join(f"{count} {reason}" for reason, count in reasons.most_common())
     return rpt("edges not followed: {}").format(named)
 
 

@@ -10,7 +10,8 @@ from bpy.app.translations import pgettext_rpt as rpt
 from . import reading, settings
 from .reading import Geometry, Unfit
 from .running import Running, Task
-from .summary import Summary, dropped_text, repairs_text
+from .selecting import select_edges
+from .summary import Summary, dropped_edges, dropped_text, repairs_text
 from .targets import Target
 
 #: Names of what is made.
@@ -72,21 +73,14 @@ vertices called cones. Modifiers are not applied. Runs beside Blender; Esc stops
             mesh.materials.clear()
             mesh.materials.append(checker())
             mesh.polygons.foreach_set("material_index", np.zeros(len(mesh.polygons), np.int32))
+        if dropped := dropped_edges(result["report"]):
+            select_edges(mesh, geometry, dropped)
         mesh.update()
         summary = Summary.of_map(result["report"])
         summary.store(mesh)
-        return "; ".join(filter(None, [summary.text(), dropped_text(result["report"]), repairs_text(result["report"])]))
-
-
-def are_edges(geometry: Geometry, pairs: np.ndarray) -> np.ndarray:
-    """Whether an edge joins one of these pairs of vertices (e,)."""
-    n = len(geometry.positions)
-
-    def keys(ends: np.ndarray) -> np.ndarray:
-        ends = np.sort(ends.astype(np.int64), axis=1)
-        return ends[:, 0] * n + ends[:, 1]
-
-    return np.isin(keys(geometry.edges), keys(pairs.reshape(-1, 2)))
+        selected = rpt("they are selected") if dropped else ""
+        texts = [summary.text(), dropped_text(result["report"]), selected, repairs_text(result["report"])]
+        return "; ".join(filter(None, texts))
 
 
 def is_jump(geometry: Geometry, uv: np.ndarray) -> np.ndarray:

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import re
+
 import bpy
 import numpy as np
 import pytest
 import shapes
+from seamstress.selecting import SELECTED
 
 
 def quads(**settings: object) -> bpy.types.Object:
@@ -28,6 +31,17 @@ def test_count_of_a_monkey(asked: int) -> None:
     assert made.name == "Suzanne quads" and made is not source
     assert source.hide_get() and source.hide_render and len(source.data.polygons) == 500
     assert made.select_get() and not source.select_get()
+
+
+def test_what_is_selected_is_sound() -> None:
+    """As edit mode wants it, and keeps it."""
+    shapes.monkey()
+    made = quads(faces=500)
+    assert all(made.data.attributes[name].data_type == "BOOLEAN" for name in SELECTED if name in made.data.attributes)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert {edge.select for edge in made.data.edges} == {False}
 
 
 def test_targets_agree() -> None:
@@ -223,6 +237,17 @@ def test_instances_of_collections() -> None:
     assert near(len(source.data.polygons), 500, 0.1)
     assert bpy.ops.seamstress.quads(faces=300, original="HIDE") == {"FINISHED"}
     assert source.hide_viewport and [object.hide_viewport for object in collection.objects] == [True, False]
+
+
+def test_edges_that_cannot_be_followed_are_selected(capfd: pytest.CaptureFixture[str]) -> None:
+    """Every edge of a fan: a triangle with all three on the axes would have to be a point."""
+    bpy.ops.mesh.primitive_circle_add(vertices=24, fill_type="TRIFAN")
+    source = bpy.context.object
+    source.data.edges.foreach_set("use_edge_sharp", [True] * len(source.data.edges))
+    quads(faces=40)
+    told = re.search(r"edges not followed: (.*); the original has them selected", capfd.readouterr().out)
+    counts = [int(count) for count in re.findall(r"\d+", told[1])]
+    assert sum(counts) == sum(edge.select for edge in source.data.edges) > 0
 
 
 @pytest.mark.parametrize("axes", [{"X"}, {"X", "Y"}])
