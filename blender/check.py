@@ -70,7 +70,9 @@ def main() -> None:
     given = variables()
     for version, python in found.items():
         print(f"== Blender {version}", flush=True)
-        done = subprocess.run([python, "-m", "pytest", "-q", "tests", *sys.argv[1:]], cwd=HERE, env=given)
+        # Processes are the same in all of them.
+        less = [] if version == BLENDERS[0] else ["--ignore=tests/test_jobs.py"]
+        done = subprocess.run([python, "-m", "pytest", "-q", "tests", *less, *sys.argv[1:]], cwd=HERE, env=given)
         if done.returncode != 0:
             raise SystemExit(done.returncode)
 

@@ -191,6 +191,20 @@ def put(carried: Carried, marks: list[np.ndarray], mesh: bpy.types.Mesh) -> None
             mesh.normals_split_custom_set(normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None])
 
 
+def keep_choices(old: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
+    """Gives a mesh what is chosen of another: active layers, and custom properties."""
+    for layer in old.uv_layers:
+        if (same := mesh.uv_layers.get(layer.name)) is not None:
+            same.active = same.active or layer.active
+            same.active_render = same.active_render or layer.active_render
+    for which in ("active_color_index", "render_color_index"):
+        index = getattr(old.color_attributes, which)
+        if 0 <= index < len(old.color_attributes):
+            setattr(mesh.color_attributes, which, mesh.color_attributes.find(old.color_attributes[index].name))
+    for name in old.keys():
+        mesh[name] = old[name]
+
+
 def give(mesh: bpy.types.Mesh, name: str, type: str, on: str, new: np.ndarray) -> None:
     """Gives a mesh an attribute."""
     property, _, dtype = TYPES[type]

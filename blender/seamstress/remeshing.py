@@ -100,6 +100,8 @@ attributes. Runs beside Blender; Esc stops it"""
         edges = made.origin[reading.values(mesh.edges, "vertices", 2, np.int32)]
         marks = carrying.marks_along(carried, geometry, result["vertices"], edges)
         carrying.put(made.carried, marks, mesh)
+        if self.use_attributes:
+            carrying.keep_choices(old, mesh)
         summary = Summary.of_quads(mesh, result["report"])
         summary.store(mesh)
         dropped = [] if applies or axes else dropped_edges(result["report"])

@@ -148,6 +148,25 @@ def test_both_sides_of_symmetry_carry_the_same() -> None:
     assert np.abs(weights - np.column_stack([x, -x]).clip(0.0)).max() < 1e-3
 
 
+def test_choices_are_kept() -> None:
+    """Of three UV maps and two colors the second is shown, the last is rendered; a note goes along."""
+    source = shapes.grid(8)
+    mesh = source.data
+    for name in "abc":
+        mesh.uv_layers.new(name=name)
+    for name in ("red", "blue"):
+        mesh.color_attributes.new(name, "FLOAT_COLOR", "POINT")
+    mesh.uv_layers["b"].active = True
+    mesh.uv_layers["c"].active_render = True
+    mesh.color_attributes.active_color_index = 1
+    mesh.color_attributes.render_color_index = 0
+    mesh["note"] = "keep"
+    made = remeshed(source, 64).data
+    assert made.uv_layers.active.name == "b" and made.uv_layers["c"].active_render
+    assert made.color_attributes.active_color.name == "blue" and made.color_attributes.render_color_index == 0
+    assert made["note"] == "keep"
+
+
 def test_attributes_can_be_left_behind() -> None:
     source = shapes.cube()
     made = remeshed(source, use_attributes=False)
