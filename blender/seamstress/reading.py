@@ -69,6 +69,13 @@ def linear_part(object: bpy.types.Object) -> np.ndarray:
     return linear
 
 
+def require_own(*data: bpy.types.ID) -> None:
+    """Raises ``Unfit`` if something that is to be changed belongs to another file."""
+    for one in data:
+        if one.library is not None:
+            raise Unfit(rpt("{} is linked from another file; make it local first").format(one.name))
+
+
 @contextmanager
 def mesh_of(context: bpy.types.Context, object: bpy.types.Object, apply_modifiers: bool) -> Iterator[bpy.types.Mesh]:
     """The mesh of an object, with its modifiers applied if that is asked for."""

@@ -42,6 +42,8 @@ attributes. Runs beside Blender; Esc stops it"""
 
     def task(self, context: bpy.types.Context, objects: list[bpy.types.Object]) -> Task:
         object = objects[0]
+        if self.original == "REPLACE":
+            reading.require_own(*objects)
         axes = ["XYZ".index(axis) for axis in sorted(self.symmetry)]
         linear = reading.linear_part(object)
         with reading.mesh_of(context, object, self.use_modifiers) as whole, symmetry.side_of(whole, axes) as mesh:

@@ -41,6 +41,7 @@ vertices called cones. Modifiers are not applied. Runs beside Blender; Esc stops
     def task(self, context: bpy.types.Context, objects: list[bpy.types.Object]) -> Task:
         object = objects[0]
         mesh = object.data
+        reading.require_own(object, mesh)
         if not mesh.polygons:
             raise Unfit(rpt("{} has no faces").format(object.name))
         geometry = reading.read(mesh, reading.linear_part(object))

@@ -19,6 +19,7 @@ def added(name: str, vertices: object, faces: object) -> bpy.types.Object:
 
 def select(*objects: bpy.types.Object) -> None:
     """Selects these objects alone; the first is active."""
+    bpy.context.view_layer.update()
     for object in bpy.context.view_layer.objects:
         object.select_set(object in objects)
     bpy.context.view_layer.objects.active = objects[0]

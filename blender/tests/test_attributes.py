@@ -139,7 +139,28 @@ def test_both_sides_of_symmetry_carry_the_same() -> None:
         group = source.vertex_groups.new(name=name)
         for vertex, place in enumerate(places):
             group.add([vertex], float(max(side * place[0], 0.0)), "REPLACE")
+    mesh = source.data
+    layer = mesh.uv_layers.new(name="flat")
+    corners = np.array([loop.vertex_index for loop in mesh.loops])
+    layer.uv.foreach_set("vector", places[corners, :2].astype(np.float32).ravel())
+    mesh.normals_split_custom_set(np.tile([0.6, 0.0, 0.8], (len(mesh.loops), 1)))
+    source.shape_key_add(name="Basis", from_mix=False)
+    source.shape_key_add(name="Out", from_mix=False).data.foreach_set(
+        "co", (places + [0.5, 0, 0]).astype(np.float32).ravel()
+    )
     made = remeshed(source, 100, symmetry={"X"})
+    places = shapes.positions(made.data)
+    corners = np.array([loop.vertex_index for loop in made.data.loops])
+    sides = np.sign([made.data.polygons[i // 4].center.x for i in range(len(corners))])
+    wanted = np.column_stack([np.abs(places[corners, 0]), places[corners, 1]])
+    assert np.abs(shapes.attribute(made.data, "flat", "vector", 2) - wanted).max() < 1e-3
+    normals = np.array([normal.vector for normal in made.data.corner_normals])
+    inner = np.abs(places[corners, 0]) > 1e-3
+    assert np.abs(normals - np.column_stack([0.6 * sides, 0.0 * sides, 0.8 + 0.0 * sides]))[inner].max() < 1e-2
+    moved = np.empty(len(places) * 3, np.float32)
+    made.data.shape_keys.key_blocks["Out"].data.foreach_get("co", moved)
+    offsets = moved.reshape(-1, 3) - places
+    assert np.abs(offsets - 0.5 * np.sign(places.round(4)) * [1, 0, 0])[np.abs(places[:, 0]) > 1e-3].max() < 1e-3
     weights = np.zeros((len(made.data.vertices), 2))
     for vertex in made.data.vertices:
         for group in vertex.groups:

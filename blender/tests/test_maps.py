@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -46,6 +49,42 @@ def test_scale_is_that_of_the_world() -> None:
     bpy.context.view_layer.update()
     mesh = mapped(source, tile=0.5)
     assert np.allclose(shapes.uv_areas(mesh, "Seamless"), 3.0 / 16.0 / 0.25, rtol=0.01)
+
+
+def soup() -> bpy.types.Object:
+    """A plane whose triangles share no vertices, as some files have them."""
+    source = shapes.grid(6)
+    mesh = source.data
+    places = shapes.positions(mesh)
+    triangles = [t for p in mesh.polygons for a, b, c, d in [p.vertices] for t in ((a, b, c), (a, c, d))]
+    corners = places[np.array(triangles).ravel()]
+    bpy.data.objects.remove(source)
+    return shapes.added("Soup", corners, np.arange(len(corners)).reshape(-1, 3).tolist())
+
+
+@pytest.mark.parametrize("make", [soup, non_manifold])
+def test_repaired_and_welded_surfaces_put_uvs_where_they_belong(make: Callable[[], bpy.types.Object]) -> None:
+    mesh = mapped(make())
+    # Faces that a repair has turned over are mirrored, as the surface goes on there.
+    shares = np.abs(shapes.uv_areas(mesh, "Seamless")) / shapes.areas(mesh)
+    assert np.abs(shares - 1.0).max() < 1e-4
+
+
+def test_linked_meshes_are_not_changed(tmp_path: Path) -> None:
+    """They belong to another file; a new object beside them is possible."""
+    file = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(file, {shapes.monkey()})
+    bpy.data.objects.remove(bpy.context.object)
+    with bpy.data.libraries.load(file, link=True) as (_, wanted):
+        wanted.objects = ["Suzanne"]
+    (linked,) = wanted.objects
+    bpy.context.collection.objects.link(linked)
+    shapes.select(linked)
+    for call in (bpy.ops.seamstress.seamless_uv, lambda: bpy.ops.seamstress.quads(faces=500, original="REPLACE")):
+        with pytest.raises(RuntimeError, match="Suzanne is linked from another file"):
+            call()
+    assert bpy.ops.seamstress.quads(faces=500) == {"FINISHED"}
+    assert bpy.context.object.library is None and 450 <= len(bpy.context.object.data.polygons) <= 550
 
 
 def test_scale_can_be_fitted() -> None:
