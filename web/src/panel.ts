@@ -3,6 +3,7 @@ import { colourOf, coneColour, css, PLAIN, type Colour } from './colours';
 import { h } from './dom';
 import { histogram, type Measure } from './measures';
 import type { Model } from './model';
+import { nearestSide } from './picking';
 import { polygonCount } from './scene';
 import { MARKS, suitable, type Settings } from './settings';
 import { trianglesOf } from './model';
@@ -11,6 +12,8 @@ import { canDraw, View, type MarkName, type Paint } from './view';
 export interface PanelEvents {
     /** The settings have changed by the user's hand. */
     change?(settings: Settings): void;
+    /** A side of a face has been picked, by its vertices. */
+    side?(vertices: readonly [number, number]): void;
 }
 
 const CHECKS = 14;
@@ -47,7 +50,10 @@ export class Panel {
             this.stage.append(h('div', { class: `view ${drawing.isFlat ? 'map' : 'surface'}` }, canvas, h('span', { class: 'caption' }, name)));
             const view = new View(canvas, drawing, uvs, halves, {
                 hover: (face) => { this.hover(face); },
-                pick: (face) => { this.pick(face); },
+                pick: (face, point) => {
+                    this.pick(face);
+                    if (point && !drawing.isFlat) this.pickSide(face, point);
+                },
                 move: (pose) => { if (!drawing.isFlat) this.set({ pose }); },
             });
             this.views.push(view);
@@ -64,6 +70,19 @@ export class Panel {
 
     pick(face: number): void {
         this.set({ picked: face });
+    }
+
+    /** Draws these edges as features, in the place of those found. */
+    setFeatures(pairs: readonly (readonly [number, number])[]): void {
+        const { positions } = this.model.scene;
+        this.views[0]?.setFeatures(Float32Array.from(pairs.flat().flatMap((vertex) => [...positions.subarray(3 * vertex, 3 * vertex + 3)])));
+    }
+
+    private pickSide(face: number, point: readonly number[]): void {
+        const { corners, positions, sides } = this.model.scene;
+        const vertices = [...corners.subarray(sides * face, sides * (face + 1))];
+        const [a, b] = nearestSide(vertices.map((vertex) => [...positions.subarray(3 * vertex, 3 * vertex + 3)]), point);
+        this.events.side?.([vertices[a], vertices[b]]);
     }
 
     /** Shows elements: picks the first face, and brings them to the middle. */

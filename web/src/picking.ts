@@ -6,8 +6,14 @@ export interface Ray {
     readonly direction: readonly number[];
 }
 
-/** The first triangle that a ray meets, of triangles of nine coordinates each; -1 if it meets none. Möller and Trumbore. */
-export function firstHit(triangles: Float32Array, { origin, direction }: Ray): number {
+/** A triangle and the point where a ray meets it. */
+export interface Hit {
+    readonly triangle: number;
+    readonly point: readonly number[];
+}
+
+/** The first triangle that a ray meets, of triangles of nine coordinates each. Möller and Trumbore. */
+export function firstHit(triangles: Float32Array, { origin, direction }: Ray): Hit | undefined {
     const [ox, oy, oz] = origin;
     const [dx, dy, dz] = direction;
     let [nearest, found] = [Infinity, -1];
@@ -27,5 +33,19 @@ export function firstHit(triangles: Float32Array, { origin, direction }: Ray): n
         const t = (e2x * qx + e2y * qy + e2z * qz) / determinant;
         if (t > 0 && t < nearest) [nearest, found] = [t, at / 9];
     }
-    return found;
+    return found < 0 ? undefined : { triangle: found, point: origin.map((x, k) => x + nearest * direction[k]) };
+}
+
+/** The side of a polygon that is nearest to a point, by its two corners. */
+export function nearestSide(corners: readonly (readonly number[])[], point: readonly number[]): readonly [number, number] {
+    const distance = (a: readonly number[], b: readonly number[]): number => {
+        const along = b.map((x, k) => x - a[k]);
+        const square = along.reduce((sum, x) => sum + x * x, 0);
+        const share = square > 0 ? along.reduce((sum, x, k) => sum + x * (point[k] - a[k]), 0) / square : 0;
+        const t = Math.max(0, Math.min(1, share));
+        return Math.hypot(...along.map((x, k) => a[k] + t * x - point[k]));
+    };
+    const distances = corners.map((corner, k) => distance(corner, corners[(k + 1) % corners.length]));
+    const side = distances.indexOf(Math.min(...distances));
+    return [side, (side + 1) % corners.length];
 }

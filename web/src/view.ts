@@ -23,7 +23,8 @@ export interface Paint {
 export interface ViewEvents {
     /** The pointer is over a face, or over none: -1. */
     hover(face: number): void;
-    pick(face: number): void;
+    /** A face is picked at a point, or none: -1. */
+    pick(face: number, point?: readonly number[]): void;
     move(pose: Pose): void;
 }
 
@@ -103,7 +104,8 @@ export class View {
     measure(): number {
         const start = performance.now();
         this.draw();
-        this.gl.finish();
+        // Reading a pixel waits for the drawing.
+        this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
         return performance.now() - start;
     }
 
@@ -127,6 +129,15 @@ export class View {
         this.request();
     }
 
+    /** Draws other lines in the place of feature edges. */
+    setFeatures(ends: Float32Array): void {
+        this.marks.get('features')?.setParent(null);
+        this.marks.delete('features');
+        const line = LINES.find(({ name }) => name === 'features');
+        if (line) this.addMark('features', this.makeLines(ends, line));
+        this.request();
+    }
+
     setPose(pose: Pose): void {
         this.pose = pose;
         this.request();
@@ -144,8 +155,8 @@ export class View {
 
     /** The face under a point of the window, or -1. */
     faceAt(x: number, y: number): number {
-        const triangle = firstHit(this.drawing.triangles, this.ray(x, y));
-        return triangle < 0 ? -1 : Math.floor(triangle / this.halves);
+        const hit = firstHit(this.drawing.triangles, this.ray(x, y));
+        return hit ? Math.floor(hit.triangle / this.halves) : -1;
     }
 
     private move(pose: Pose): void {
@@ -284,7 +295,8 @@ export class View {
         const release = (event: PointerEvent): void => {
             this.pointers.delete(event.pointerId);
             if (event.type === 'pointerup' && this.pressed && isNear(this.pressed, event)) {
-                this.events.pick(this.faceAt(event.clientX, event.clientY));
+                const hit = firstHit(this.drawing.triangles, this.ray(event.clientX, event.clientY));
+                this.events.pick(hit ? Math.floor(hit.triangle / this.halves) : -1, hit?.point);
             }
             this.pressed = undefined;
         };

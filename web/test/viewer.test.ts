@@ -2,7 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { axes, moved, parsePose, poseText, START, turned, zoomed } from '../src/camera';
 import { colourOf } from '../src/colours';
 import { findEdges, histogram, measuresOf } from '../src/measures';
-import { firstHit } from '../src/picking';
+import { firstHit, nearestSide } from '../src/picking';
 import type { Scene } from '../src/scene';
 import { parseSettings, settingsText, type Settings } from '../src/settings';
 import type { MarkName } from '../src/view';
@@ -68,10 +68,17 @@ describe('firstHit', () => {
     const triangles = Float32Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1]);
 
     it('is the nearest triangle in front', () => {
-        expect(firstHit(triangles, { origin: [0.2, 0.2, 3], direction: [0, 0, -1] })).toBe(1);
-        expect(firstHit(triangles, { origin: [0.2, 0.2, 0.5], direction: [0, 0, -1] })).toBe(0);
-        expect(firstHit(triangles, { origin: [0.2, 0.2, 3], direction: [0, 0, 1] })).toBe(-1);
-        expect(firstHit(triangles, { origin: [0.9, 0.9, 3], direction: [0, 0, -1] })).toBe(-1);
+        expect(firstHit(triangles, { origin: [0.2, 0.2, 3], direction: [0, 0, -1] })).toEqual({ triangle: 1, point: [0.2, 0.2, 1] });
+        expect(firstHit(triangles, { origin: [0.2, 0.2, 0.5], direction: [0, 0, -1] })?.triangle).toBe(0);
+        expect(firstHit(triangles, { origin: [0.2, 0.2, 3], direction: [0, 0, 1] })).toBeUndefined();
+        expect(firstHit(triangles, { origin: [0.9, 0.9, 3], direction: [0, 0, -1] })).toBeUndefined();
+    });
+
+    it('is at some side of its triangle', () => {
+        const corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];
+        expect(nearestSide(corners, [0.4, 0.05, 0])).toEqual([0, 1]);
+        expect(nearestSide(corners, [0.48, 0.48, 0])).toEqual([1, 2]);
+        expect(nearestSide(corners, [0.02, 0.5, 0])).toEqual([2, 0]);
     });
 });
 

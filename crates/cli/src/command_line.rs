@@ -2,6 +2,8 @@
 
 use crate::args::EXIT_CODES;
 use crate::command;
+#[cfg(feature = "app")]
+use crate::commands::AppArgs;
 use crate::commands::{
     CheckArgs, CompletionsArgs, ExtractArgs, FeaturesArgs, FieldArgs, IntegerArgs, LayoutQuadsArgs,
     ManArgs, MapArgs, MatchingsArgs, MeasureArgs, OptimizeArgs, QuadArgs, QualityArgs, ReportArgs,
@@ -59,6 +61,8 @@ enum Chosen {
     Extract(ExtractArgs),
     Quality(QualityArgs),
     Report(ReportArgs),
+    #[cfg(feature = "app")]
+    App(AppArgs),
     /// Study and compare: other objectives, starts, solvers and ways of rounding
     ///
     /// `lab map` is `map` with all its options.
@@ -154,6 +158,8 @@ impl CommandLine {
             Chosen::Extract(args) => command::run(args),
             Chosen::Quality(args) => command::run(args),
             Chosen::Report(args) => command::run(args),
+            #[cfg(feature = "app")]
+            Chosen::App(args) => args.run(),
             Chosen::Layout(args) | Chosen::Lab(Lab::Optimize(args)) => command::run(args),
             Chosen::Field(args) | Chosen::Lab(Lab::Field(args)) => command::run(args),
             Chosen::RepairMatchings(args) | Chosen::Lab(Lab::RepairMatchings(args)) => {

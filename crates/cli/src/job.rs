@@ -18,7 +18,7 @@ const GRACE: Duration = Duration::from_secs(1);
 /// How often the waiting thread looks up.
 const LOOK_UP: Duration = Duration::from_millis(20);
 /// Stack of the working thread, as large as main threads have.
-const STACK: usize = 8 << 20;
+pub(crate) const STACK: usize = 8 << 20;
 
 /// A run of a command.
 pub(crate) struct Job {

@@ -4,11 +4,10 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::format::is_compressed;
+use crate::temporary::Temporary;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use tempfile::NamedTempFile;
-
-use crate::format::is_compressed;
 
 /// A file that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -43,8 +42,8 @@ pub struct AtomicFile {
 /// Where data goes.
 #[derive(Debug)]
 enum Sink {
-    Plain(BufWriter<NamedTempFile>),
-    Compressed(GzEncoder<BufWriter<NamedTempFile>>),
+    Plain(BufWriter<Temporary>),
+    Compressed(GzEncoder<BufWriter<Temporary>>),
 }
 
 impl Sink {
@@ -55,7 +54,7 @@ impl Sink {
         }
     }
 
-    fn finish(self) -> io::Result<NamedTempFile> {
+    fn finish(self) -> io::Result<Temporary> {
         let file = match self {
             Self::Plain(file) => file,
             Self::Compressed(file) => file.finish()?,
@@ -89,19 +88,9 @@ impl AtomicFile {
                 )));
             }
         };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".seamstress-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As for any new file; the process's mask applies.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let file =
-            builder.tempfile_in(directory).map_err(|error| fail(in_words(directory, error)))?;
-        if let Some(existing) = existing {
-            file.as_file().set_permissions(existing.permissions()).map_err(fail)?;
-        }
+        let permissions = existing.map(|existing| existing.permissions());
+        let file = Temporary::create(directory, permissions)
+            .map_err(|error| fail(in_words(directory, error)))?;
         let file = BufWriter::with_capacity(1 << 16, file);
         let file = match is_compressed(path) {
             true => Sink::Compressed(GzEncoder::new(file, Compression::default())),
@@ -123,8 +112,7 @@ impl AtomicFile {
     pub fn commit(self) -> Result<(), WriteError> {
         let Self { path, target, file } = self;
         let file = file.finish().map_err(|error| WriteError::new(&path, error))?;
-        file.persist(target).map_err(|error| WriteError::new(&path, error.error))?;
-        Ok(())
+        file.persist(&target).map_err(|error| WriteError::new(&path, error))
     }
 
     fn named(&self, error: &io::Error) -> io::Error {

@@ -50,6 +50,7 @@ mod ply_data;
 mod ply_header;
 mod read;
 mod stl;
+mod temporary;
 mod text;
 mod write;
 mod write_polygons;

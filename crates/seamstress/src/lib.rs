@@ -118,6 +118,9 @@ pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
 #[cfg(feature = "page")]
 pub use page::Page;
+#[cfg(all(feature = "page", feature = "io"))]
+#[doc(hidden)]
+pub use page::{Done, Task, refusal};
 #[cfg(feature = "page")]
 #[doc(hidden)]
 pub use page::{Explained, PageFacts};

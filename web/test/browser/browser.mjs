@@ -11,13 +11,13 @@ export const folder = mkdtempSync(join(tmpdir(), 'page-'));
 
 /** Runs the command in the folder of the tests; returns what it prints. */
 export function run(...words) {
-    return execFileSync(command, words, { cwd: folder, encoding: 'utf8' });
+    return execFileSync(command, words, { cwd: folder, encoding: 'utf8', stdio: 'pipe' });
 }
 
 /** A browser that draws in software, and opens no connection of its own. */
 export function launch() {
     return chromium.launch({
-        executablePath: '/usr/bin/chromium',
+        executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
         args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
             '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader',
             '--enable-unsafe-swiftshader'],
@@ -29,7 +29,7 @@ export async function open(browser, address, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, ...options });
     const page = await context.newPage();
     page.faults = [];
-    page.setDefaultTimeout(120_000);
+    page.setDefaultTimeout(60_000);
     page.on('pageerror', (error) => page.faults.push(error.message));
     page.on('console', (message) => { if (message.type() === 'error') page.faults.push(message.text()); });
     page.on('request', (request) => {

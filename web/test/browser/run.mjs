@@ -2,21 +2,25 @@
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { folder, launch } from './browser.mjs';
+import { tests as ofApp } from './app.mjs';
 import { tests as ofReports } from './report.mjs';
 
 // With a folder in PICTURES, what each test ends with is kept there.
 const pictures = process.env.PICTURES;
 if (pictures) mkdirSync(pictures, { recursive: true });
 
+// With a word, only the tests that have it in their names.
+const wanted = process.argv[2] ?? '';
+const all = Object.entries({ ...ofReports, ...ofApp }).filter(([name]) => name.includes(wanted));
 const browser = await launch();
 let failed = 0;
-for (const [name, test] of Object.entries({ ...ofReports })) {
+for (const [name, test] of all) {
     const start = Date.now();
     try {
         const page = await test(browser);
         const faults = page?.faults ?? [];
         if (faults.length > 0) throw new Error(faults.join('\n'));
-        if (pictures) await page.screenshot({ path: join(pictures, `${name.replaceAll(/\W+/g, '-')}.png`) });
+        if (pictures && page) await page.screenshot({ path: join(pictures, `${name.replaceAll(/\W+/g, '-')}.png`) });
         await page?.context().close();
         console.log(`ok      ${name} (${((Date.now() - start) / 1000).toFixed(1)} s)`);
     } catch (error) {
@@ -26,4 +30,4 @@ for (const [name, test] of Object.entries({ ...ofReports })) {
 }
 await browser.close();
 rmSync(folder, { recursive: true });
-process.exitCode = failed > 0 ? 1 : 0;
+process.exit(failed > 0 ? 1 : 0);

@@ -1,5 +1,7 @@
 //! The commands, each with its arguments, its calls of the library and its words.
 
+#[cfg(feature = "app")]
+mod app;
 mod check;
 mod extract;
 mod features;
@@ -16,6 +18,8 @@ mod quad_files;
 mod quality;
 mod report;
 
+#[cfg(feature = "app")]
+pub(crate) use app::AppArgs;
 pub(crate) use check::CheckArgs;
 pub(crate) use extract::ExtractArgs;
 pub(crate) use features::FeaturesArgs;

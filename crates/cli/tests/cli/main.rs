@@ -1,6 +1,7 @@
 //! The command as its users meet it: files in, files, messages and exit codes out.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod app;
 mod bad_meshes;
 mod check;
 mod consistency;

@@ -3,10 +3,15 @@
 mod check;
 mod facts;
 mod scene;
+#[cfg(feature = "io")]
+mod task;
 mod walk;
 
 #[doc(hidden)]
 pub use facts::{Explained, PageFacts};
+#[cfg(feature = "io")]
+#[doc(hidden)]
+pub use task::{Done, Task, refusal};
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::map::SeamlessMap;

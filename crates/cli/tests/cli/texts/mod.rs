@@ -44,7 +44,7 @@ fn folder() -> Folder {
 }
 
 /// Commands that the help lists.
-const HELP: [&str; 17] = [
+const HELP: [&str; 18] = [
     "map",
     "quad",
     "integer",
@@ -54,6 +54,7 @@ const HELP: [&str; 17] = [
     "extract",
     "quality",
     "report",
+    "app",
     "lab",
     "lab map",
     "lab optimize",

@@ -1,0 +1,142 @@
+//! What a page asks for: a file and options in, a result with its page and its files out. Pages in a browser and pages
+//! of the command do the same tasks.
+
+use super::Page;
+use crate::context::Context;
+use crate::error::{Error, ErrorKind};
+use crate::feature_sources::{FeatureSource, Features};
+use crate::inspection::{Inspection, SurfaceOptions};
+use crate::integer::IntegerGridMap;
+use crate::map::SeamlessMap;
+use crate::options::{IntegerMapOptions, MapOptions, QuadOptions};
+use crate::quads::QuadMesh;
+use serde::Deserialize;
+
+/// Something to make of a mesh.
+#[doc(hidden)]
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Task {
+    #[serde(default)]
+    surface: SurfaceOptions,
+    make: Make,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Make {
+    /// What is wrong with the mesh, and the features of these sources.
+    Check(Features),
+    Map(MapOptions),
+    Integer(IntegerMapOptions),
+    Quads(QuadOptions),
+}
+
+/// The result of a task.
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct Done {
+    page: Page,
+    made: Made,
+}
+
+#[derive(Debug)]
+enum Made {
+    Checked,
+    Map(SeamlessMap),
+    Integer(IntegerGridMap),
+    Quads(QuadMesh),
+}
+
+impl Task {
+    /// Reads a task from JSON. It cannot name files.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`].
+    pub fn parse(json: &str) -> Result<Self, Error> {
+        let task: Self =
+            serde_json::from_str(json).map_err(|error| Error::options(error.to_string()))?;
+        let features = match &task.make {
+            Make::Check(features) => features,
+            Make::Map(options) => &options.features,
+            Make::Integer(options) => &options.map.features,
+            Make::Quads(options) => &options.map.features,
+        };
+        match features.sources().iter().find_map(FeatureSource::file) {
+            Some(_) => Err(Error::options("features cannot come from a file here")),
+            None => Ok(task),
+        }
+    }
+
+    /// Does it with the content of a file of some name.
+    ///
+    /// # Errors
+    /// Those of reading, and of what is made.
+    pub fn run(&self, content: &[u8], name: &str, context: Context) -> Result<Done, Error> {
+        let inspection = Inspection::of_file_content(content, name, &self.surface)?;
+        let make_surface =
+            |inspection: Inspection| Ok::<_, Error>(inspection.surface()?.with_context(context));
+        let (page, made) = match &self.make {
+            Make::Check(features) => {
+                let curves = match inspection.is_surface() && !features.is_none() {
+                    true => Some(make_surface(inspection.clone())?.features(features)?),
+                    false => None,
+                };
+                (Page::of_mesh(&inspection, curves.as_ref()), Made::Checked)
+            }
+            Make::Map(options) => {
+                let map = make_surface(inspection)?.parametrize(options)?;
+                (map.page(), Made::Map(map))
+            }
+            Make::Integer(options) => {
+                let map = make_surface(inspection)?.integer_map(options)?;
+                (map.page(), Made::Integer(map))
+            }
+            Make::Quads(options) => {
+                let quads = make_surface(inspection)?.quad_mesh(options)?;
+                (quads.page(), Made::Quads(quads))
+            }
+        };
+        Ok(Done { page, made })
+    }
+}
+
+/// An error as pages show it, as JSON.
+#[doc(hidden)]
+pub fn refusal(error: &Error) -> String {
+    let json = serde_json::json!({
+        "code": error.code(),
+        "message": error.to_string(),
+        "hint": error.hint(),
+    });
+    json.to_string()
+}
+
+impl Done {
+    /// The page of the result.
+    pub fn page(&self) -> &Page {
+        &self.page
+    }
+
+    /// The result as a file: a page, maps as OBJ, quads in the format of the name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unwritable`] if there is no such file of it.
+    pub fn file(&self, name: &str) -> Result<Vec<u8>, Error> {
+        if name.ends_with(".html") {
+            return Ok(self.page.html().into_bytes());
+        }
+        let mut file = Vec::new();
+        let written = match &self.made {
+            Made::Map(map) if name.ends_with(".obj") => map.write_to(&mut file),
+            Made::Integer(map) if name.ends_with(".obj") => map.write_to(&mut file),
+            Made::Quads(quads) => quads.write_as(name, &mut file),
+            _ => {
+                let text = format!("{name}: the result has no file of this kind");
+                return Err(Error::new(ErrorKind::Unwritable, text));
+            }
+        };
+        let failed = |cause: std::io::Error| Error::new(ErrorKind::Unwritable, cause.to_string());
+        written.map_err(failed).map(|()| file)
+    }
+}
