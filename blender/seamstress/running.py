@@ -124,19 +124,19 @@ class Running:
     def begin(self, context: bpy.types.Context) -> set[str]:
         """Starts the work, and lets Blender go on."""
         global current
-        current = self._queue(context)
+        self._running = current = self._queue(context)
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if current is None or (event.type == "ESC" and event.value == "PRESS"):
+        if current is not self._running or (event.type == "ESC" and event.value == "PRESS"):
             self.cancel(context)
             self.report({"WARNING"}, rpt("Cancelled; nothing was changed"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        queue = current
+        queue = self._running
         if queue.step():
             text, fraction = queue.progress
             context.workspace.status_text_set(f"{text} {fraction:.0%}   {iface('Esc: Cancel')}")
@@ -147,14 +147,14 @@ class Running:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Ends the work; Blender calls this also when it closes the file."""
-        if current is not None:
-            current.cancel()
+        self._running.cancel()
         self._leave(context)
         self.end(context)
 
     def _leave(self, context: bpy.types.Context) -> None:
         global current
-        current = None
+        if current is self._running:
+            current = None
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
         redraw(context)

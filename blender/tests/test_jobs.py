@@ -270,3 +270,19 @@ def test_escape_and_the_panel_stop_a_modal_operator(by_panel: bool) -> None:
     assert operator.modal(window, TIMER if by_panel else ESCAPE) == {"CANCELLED"}
     assert process.poll() is not None and running.current is None and window.timers == 0
     assert operator.reports == [({"WARNING"}, "Cancelled; nothing was changed")]
+
+
+def test_one_that_was_stopped_leaves_the_next_alone() -> None:
+    """The panel stops one, and another begins before the first has looked."""
+    first, second = (Modal(Task(name, "quads", arguments(), lambda _: "done")) for name in "ab")
+    for operator in (first, second):
+        operator.objects = lambda _: [0]
+    window = Window()
+    first.begin(window)
+    first.modal(window, TIMER)
+    assert bpy.ops.seamstress.stop() == {"FINISHED"}
+    second.begin(window)
+    assert first.modal(window, TIMER) == {"CANCELLED"} and running.current is not None
+    while (state := second.modal(window, TIMER)) == {"RUNNING_MODAL"}:
+        time.sleep(0.01)
+    assert state == {"FINISHED"} and running.current is None and window.timers == 0
