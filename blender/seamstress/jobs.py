@@ -12,6 +12,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +25,21 @@ PAUSE = 0.02
 
 
 class Failure(Exception):
-    """Why a job has no result, for people."""
+    """Why a job has no result, for people: a text, and what stands in its braces."""
 
-    def __init__(self, message: str, code: str | None = None, findings: list[dict[str, Any]] | None = None) -> None:
-        super().__init__(message)
+    def __init__(
+        self, text: str, *values: object, code: str = "crashed", findings: list[dict[str, Any]] | None = None
+    ) -> None:
+        super().__init__(text.format(*values) if values else text)
+        self._text, self._values = text, values
         #: The library's name of the kind of failure; ``crashed`` or ``cancelled`` if it did not come to that.
         self.code = code
         #: What a check has found, one by one.
         self.findings = findings or []
+
+    def translated(self, translate: Callable[[str], str]) -> str:
+        """The text in another language."""
+        return translate(self._text).format(*self._values) if self._values else translate(self._text)
 
 
 def package_paths() -> list[str]:
@@ -40,7 +48,7 @@ def package_paths() -> list[str]:
     for name in ("seamstress_mesh", "numpy"):
         spec = importlib.util.find_spec(name)
         if spec is None or spec.origin is None:
-            raise Failure(f"The package {name} is missing; install the extension again", "crashed")
+            raise Failure("The package {} is missing; install the extension again", name)
         paths.append(str(Path(spec.origin).parents[1]))
     return paths
 
@@ -62,7 +70,7 @@ class Job:
                     command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=said, creationflags=flags
                 )
             except OSError as error:
-                raise Failure(f"No process could be started: {error}", "crashed") from error
+                raise Failure("No process could be started: {}", error) from error
         #: The stage that runs, and the share of it that is done.
         self.progress: tuple[str, float] = ("start", 0.0)
         self._is_cancelled = False
@@ -96,19 +104,19 @@ class Job:
         self._process.stdout.close()
         with self._folder as folder:
             if self._is_cancelled:
-                raise Failure("Cancelled", "cancelled")
+                raise Failure("Cancelled", code="cancelled")
             path = Path(folder, "result.pickle")
             if not path.exists():
-                raise Failure(self._crash(), "crashed")
+                raise self._crash()
             made = pickle.loads(path.read_bytes())
         if error := made.get("error"):
-            raise Failure(error["message"], error["code"], error["findings"])
+            raise Failure(error["message"], code=error["code"] or "failed", findings=error["findings"])
         return made["result"]
 
-    def _crash(self) -> str:
+    def _crash(self) -> Failure:
         code = self._process.returncode
         said = self._said.read_text(errors="replace").strip()[-SAID:]
         if code == -getattr(signal, "SIGKILL", 0) or "memory allocation" in said or "MemoryError" in said:
-            return "The work was ended, probably because memory ran out. Try a mesh of fewer faces"
+            return Failure("The work was ended, probably because memory ran out. Try a mesh of fewer faces")
         how = f"signal {-code}" if code < 0 else f"code {code}"
-        return f"The work ended unexpectedly ({how}); nothing was changed. {said}".strip()
+        return Failure("The work ended unexpectedly ({}); nothing was changed. {}", how, said)

@@ -100,7 +100,7 @@ class Running:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if current is not None:
-            cls.poll_message_set("Seamstress is at work; Esc stops it")
+            cls.poll_message_set(rpt("Seamstress is at work; Esc stops it"))
             return False
         return bool(cls.objects(context))
 
@@ -182,9 +182,11 @@ class Running:
                 if isinstance(outcome, Failure):
                     raise outcome
                 done.append(f"{task.label}: {task.finish(outcome)}")
-            except (Failure, Unfit) as reason:
-                more = rpt("Check selects what is wrong") if getattr(reason, "code", None) == "not-a-surface" else ""
-                self._failed.append(f"{task.label}: {reason}\n{more}".strip())
+            except Unfit as reason:
+                self._failed.append(f"{task.label}: {reason}")
+            except Failure as reason:
+                more = rpt("Check selects what is wrong") if reason.code == "not-a-surface" else ""
+                self._failed.append(f"{task.label}: {reason.translated(rpt)}\n{more}".strip())
         self.end(context)
         for text in done:
             self.report({"INFO"}, text)

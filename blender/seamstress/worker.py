@@ -144,6 +144,9 @@ def main() -> None:
         result = {"result": globals()[name](**arguments)}
     except BrokenPipeError:
         os._exit(1)
+    except MemoryError:
+        # There may be too little left to say more.
+        raise
     except Exception as error:
         fields = {field: getattr(error, field, None) for field in ERROR_FIELDS}
         # The hint is about keywords of Python.

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ import pytest
 import seamstress
 import shapes
 from seamstress import panel, running, settings
+from seamstress.jobs import Failure
 from seamstress.remeshing import SEAMSTRESS_OT_quads
 from seamstress.unwrapping import SEAMSTRESS_OT_map
 
@@ -144,3 +146,33 @@ def test_presets_are_written_and_read(tmp_path: Path, monkeypatch: pytest.Monkey
     finally:
         written.unlink()
     assert (held.faces, held.marks, held.original) == (1234, {"SEAM"}, "REPLACE")
+
+
+def spoken(call: ast.Call) -> ast.expr | None:
+    """What a call tells people, if that is a text of its own rather than one that was translated."""
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+    at = {"Unfit": 0, "poll_message_set": 0, "report": 1}.get(name)
+    told = call.args[at] if at is not None and len(call.args) > at else None
+    return told if isinstance(told, (ast.Constant, ast.JoinedStr)) else None
+
+
+def test_texts_can_be_translated() -> None:
+    """Blender translates labels and tooltips itself; messages go through its tables one by one."""
+    texts, untranslated = set(), []
+    for file in Path(seamstress.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.Call):
+                continue
+            if spoken(node) is not None:
+                untranslated.append(f"{file.name}:{node.lineno}")
+            if getattr(node.func, "id", "") in {"rpt", "iface"} and isinstance(node.args[0], ast.Constant):
+                texts.add(node.args[0].value)
+    assert not untranslated
+    assert {"{} has no faces", "Cancelled; nothing was changed", "Certified seamless map"} <= texts
+
+
+def test_failures_are_translated_with_what_stands_in_their_braces() -> None:
+    failure = Failure("The package {} is missing", "numpy")
+    assert str(failure) == "The package numpy is missing"
+    assert failure.translated({"The package {} is missing": "{} fehlt"}.get) == "numpy fehlt"
+    assert Failure("edge {0-1} has 3 faces").translated(str) == "edge {0-1} has 3 faces"
