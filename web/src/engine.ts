@@ -118,7 +118,7 @@ export class ServerEngine implements Engine {
         if (signal.aborted) stop();
         signal.addEventListener('abort', stop, { once: true });
         for (;;) {
-            const state = await (await request(`jobs/${job}`)).json() as State;
+            const state = await (await request(`jobs/${job}`, { signal })).json() as State;
             if (state.error) throw new Refusal(state.error.message, state.error.hint);
             if (state.state === 'done') break;
             if (state.progress) progress(state.progress);

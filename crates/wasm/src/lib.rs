@@ -44,14 +44,24 @@ impl Outcome {
 /// # Errors
 /// The error as JSON.
 #[wasm_bindgen]
-pub fn run(task: &str, content: &[u8], name: &str, listener: js_sys::Function) -> Result<Outcome, String> {
+pub fn run(
+    task: &str,
+    content: &[u8],
+    name: &str,
+    listener: js_sys::Function,
+) -> Result<Outcome, String> {
     LISTENER.with(|place| place.replace(Some(listener)));
     let context = Context::new().observer(|progress| {
         let numbers = [progress.component as f64, progress.n_components as f64, progress.fraction];
         let [component, n_components, fraction] = numbers.map(JsValue::from);
         LISTENER.with_borrow(|listener| {
             let Some(listener) = listener else { return };
-            let arguments = js_sys::Array::of4(&progress.stage.name().into(), &component, &n_components, &fraction);
+            let arguments = js_sys::Array::of4(
+                &progress.stage.name().into(),
+                &component,
+                &n_components,
+                &fraction,
+            );
             // A listener that fails does not stop the work.
             let _ = listener.apply(&JsValue::NULL, &arguments);
         });
