@@ -1,7 +1,8 @@
 //! Files of maps and of the meshes they belong to.
 
 use crate::meshes::Mesh;
-use seamstress_io::{MapObj, read_mesh, write_map_obj};
+use seamstress_io::attributes::{Attribute, AttributeDomain, AttributeKind};
+use seamstress_io::{Format, Polymesh, read_mesh};
 use seamstress_mesh::Metric;
 use seamstress_parametrize::{MapOptions, Purpose, SeamlessMap, Tolerance, make_map};
 use seamstress_quantize::GridSize;
@@ -26,8 +27,8 @@ pub(crate) fn seamless(
     let kept = folder.map(|folder| folder.join(format!("{name}.{quads}.map.obj")));
     if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
         let read = read_mesh(path)?;
-        let uvs = read.corner_uvs.ok_or("the map kept has no UVs")?;
-        let corners = uvs.corners.iter().map(|&c| uvs.coordinates[c as usize]).collect();
+        let uvs = read.corner_uvs().ok_or("the map kept has no UVs")?;
+        let corners = (0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect();
         let map = SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?;
         return Ok((map, 0.0));
     }
@@ -54,8 +55,11 @@ pub(crate) fn write_map(
     corner_uvs: &[[f64; 2]],
 ) -> Result<(), Box<dyn Error>> {
     let mut file = BufWriter::new(File::create(path)?);
-    let (positions, faces) = (&mesh.positions, &mesh.faces());
-    write_map_obj(&mut file, &MapObj { positions, faces, corner_uvs, comments: &[] })?;
+    let (positions, polygons) = (&mesh.positions, &mesh.faces()[..]);
+    let (domain, kind) = (AttributeDomain::Corner, AttributeKind::Uv);
+    let uvs = Attribute::new("map", domain, kind, 2, corner_uvs.as_flattened().to_vec());
+    let attributes = &vec![uvs].into();
+    Polymesh { positions, polygons, attributes, comments: &[] }.write(&mut file, Format::Obj)?;
     Ok(file.flush()?)
 }
 

@@ -58,7 +58,7 @@ pub(crate) struct FeatureArgs {
     ///   angle:DEGREES  where the surface bends by that much or more
     ///   boundary       the boundary
     ///   lines          the `l` elements of the mesh, an OBJ file
-    ///   material       borders of materials (`usemtl` of OBJ files)
+    ///   material       borders of materials (`usemtl` in OBJ, or glTF)
     ///   group          borders of groups and objects (`g` and `o`)
     ///   smoothing      borders of smoothing groups (`s`)
     ///   uv-seams       where the `vt` differ on both sides

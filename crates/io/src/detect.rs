@@ -2,7 +2,7 @@
 
 use crate::format::Format;
 use crate::text::{Text, parse_integer};
-use crate::{obj, off, stl};
+use crate::{gltf, obj, off, stl};
 
 impl Format {
     /// The format of a file's content, if it is plain from the first lines (for binary STL, from the size).
@@ -13,6 +13,9 @@ impl Format {
 
     /// Like [`Format::detect`], but leaves out OFF without its keyword, which many texts resemble.
     pub(crate) fn detect_by_keyword(bytes: &[u8]) -> Option<Self> {
+        if gltf::looks_like(bytes) {
+            return Some(Self::Gltf);
+        }
         if stl::has_binary_size(bytes) || stl::looks_ascii(bytes) {
             return Some(Self::Stl);
         }
@@ -55,6 +58,8 @@ mod tests {
         assert_eq!(Format::detect(b"8 6 12\n0 0 0"), Some(Format::Off));
         assert_eq!(Format::detect(b"ply\r\nformat ascii 1.0"), Some(Format::Ply));
         assert_eq!(Format::detect(b"solid a\n facet normal 0 0 1"), Some(Format::Stl));
+        assert_eq!(Format::detect(b"glTF\x02\0\0\0"), Some(Format::Gltf));
+        assert_eq!(Format::detect(b" {\n \"asset\": {}}"), Some(Format::Gltf));
         assert_eq!(Format::detect(b"lorem ipsum"), None);
         assert_eq!(Format::detect(b"1 2 3 4"), None);
         assert_eq!(Format::detect(b""), None);

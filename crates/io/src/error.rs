@@ -72,7 +72,7 @@ pub enum ReadErrorKind {
     Io(io::Error),
     /// Neither the name nor the content tells the format.
     #[error(
-        "the format is not known (OBJ, OFF, PLY and STL are read); the content starts with {found}"
+        "the format is not known (OBJ, OFF, PLY, STL and glTF are read); the content starts with {found}"
     )]
     UnknownFormat {
         /// The first bytes.

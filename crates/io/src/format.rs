@@ -14,14 +14,22 @@ pub enum Format {
     Ply,
     /// Stereolithography, ASCII or binary.
     Stl,
+    /// glTF 2.0, as JSON or in one binary file (GLB).
+    Gltf,
 }
 
 impl Format {
     /// The format of a file name extension (without its dot, in any case).
     #[must_use]
     pub fn from_extension(extension: &str) -> Option<Self> {
-        let known =
-            [("obj", Self::Obj), ("off", Self::Off), ("ply", Self::Ply), ("stl", Self::Stl)];
+        let known = [
+            ("obj", Self::Obj),
+            ("off", Self::Off),
+            ("ply", Self::Ply),
+            ("stl", Self::Stl),
+            ("glb", Self::Gltf),
+            ("gltf", Self::Gltf),
+        ];
         known
             .into_iter()
             .find(|(name, _)| extension.eq_ignore_ascii_case(name))
@@ -49,6 +57,7 @@ impl fmt::Display for Format {
             Self::Off => "OFF",
             Self::Ply => "PLY",
             Self::Stl => "STL",
+            Self::Gltf => "glTF",
         })
     }
 }
@@ -62,7 +71,8 @@ mod tests {
         assert_eq!(Format::from_extension("STL"), Some(Format::Stl));
         assert_eq!(Format::from_path(Path::new("a/b.c.ObJ")), Some(Format::Obj));
         assert_eq!(Format::from_path(Path::new("obj")), None);
-        assert_eq!(Format::from_extension("gltf"), None);
+        assert_eq!(Format::from_extension("GLB"), Some(Format::Gltf));
+        assert_eq!(Format::from_extension("fbx"), None);
         assert_eq!(Format::from_path(Path::new("a.b/c.ply.GZ")), Some(Format::Ply));
         assert_eq!(Format::from_path(Path::new("a.gz")), None);
     }

@@ -1,7 +1,7 @@
-//! Reading and writing meshes and maps for Seamstress: OBJ, OFF, PLY and STL.
+//! Reading and writing meshes and maps for Seamstress: OBJ, OFF, PLY, STL and glTF.
 //!
 //! [`read_mesh`] and [`parse_mesh`] turn a file into a neutral [`PolygonMesh`]: positions and
-//! polygons exactly as stored (STL corners are welded by exact position), and typed [`Note`]s about
+//! polygons exactly as stored (corners of STL and glTF are welded by exact position), and typed [`Note`]s about
 //! everything that was left out. Content compressed with gzip is unpacked. Whatever the input, they return a mesh or a [`ReadError`] that names
 //! the file, the line or byte, what was found and what was expected; time and memory are linear in
 //! the size of the file, whatever its header announces. Geometry and topology are not judged here.
@@ -11,11 +11,11 @@
 //! Fields on a mesh are read and written as `.rawfield` and `.rosy` ([`read_field`]), cones as `.sing` or
 //! angles ([`read_cones`]), matchings as `.matching` ([`read_matching`]).
 //!
-//! [`write_map_obj`] writes maps, [`Polymesh`] polygons, and [`AtomicFile`] puts a file in place only when it
+//! [`Polymesh`] writes polygons and what they carry, maps among it, and [`AtomicFile`] puts a file in place only when it
 //! is complete.
 //!
-//! The readers are our own because `tobj`, `ply-rs` and `stl_io` do not tell the line or byte of a
-//! fault and trust the counts in a header.
+//! The readers are our own because `tobj`, `ply-rs`, `stl_io` and `gltf` do not tell the line or byte of a
+//! fault, or trust the counts in a header.
 //!
 //! ```
 //! let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -31,13 +31,14 @@
 //! ```
 
 mod atomic;
-mod attributes;
 mod cones;
 mod detect;
 mod error;
 mod feature_lines;
 mod field;
 mod format;
+mod gltf;
+mod labels;
 mod matching;
 mod mesh;
 mod note;
@@ -46,6 +47,7 @@ mod obj;
 mod obj_index;
 mod off;
 mod ply;
+mod ply_attributes;
 mod ply_data;
 mod ply_header;
 mod read;
@@ -53,10 +55,8 @@ mod stl;
 mod temporary;
 mod text;
 mod write;
-mod write_polygons;
 
 pub use atomic::{AtomicFile, WriteError};
-pub use attributes::{Attribute, CornerUvs, FaceAttributes};
 pub use cones::{Cones, parse_cones, read_cones, write_singularities};
 pub use error::{Missing, Position, ReadError, ReadErrorKind};
 pub use feature_lines::{PairLine, SharpLine, parse_pairs, parse_sharp, read_pairs, read_sharp};
@@ -66,5 +66,5 @@ pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{PolygonMesh, Polygons};
 pub use note::Note;
 pub use read::{parse_mesh, read_mesh, read_mesh_as};
-pub use write::{MapObj, write_map_obj};
-pub use write_polygons::Polymesh;
+pub use seamstress_mesh::attributes;
+pub use write::Polymesh;

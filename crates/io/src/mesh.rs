@@ -1,7 +1,7 @@
 //! The neutral polygon mesh that every reader fills.
 
-use crate::attributes::{CornerUvs, FaceAttributes};
 use crate::{Format, Note};
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind, Attributes};
 
 /// A mesh as a file states it: nothing is repaired, triangulated or reordered.
 ///
@@ -17,10 +17,8 @@ pub struct PolygonMesh {
     /// Segments of the `l` polylines of an OBJ file: candidates for feature edges. A segment need not
     /// be an edge of the mesh.
     pub lines: Vec<[u32; 2]>,
-    /// Texture coordinates, if every corner of every polygon has them (OBJ only).
-    pub corner_uvs: Option<CornerUvs>,
-    /// Materials and groups of the polygons (OBJ only).
-    pub attributes: FaceAttributes,
+    /// What else it says of vertices, corners and polygons, if it says it of all of them.
+    pub attributes: Attributes,
     /// The format of the content.
     pub format: Format,
     /// What was changed or left out.
@@ -33,17 +31,17 @@ impl PolygonMesh {
             positions: Vec::new(),
             polygons: Polygons::default(),
             lines: Vec::new(),
-            corner_uvs: None,
-            attributes: FaceAttributes::default(),
+            attributes: Attributes::default(),
             format,
             notes: Vec::new(),
         }
     }
 
-    /// Takes what it says of its faces, texture coordinates among it.
+    /// The first texture coordinates of the corners.
     #[must_use]
-    pub fn take_attributes(&mut self) -> FaceAttributes {
-        FaceAttributes { uvs: self.corner_uvs.take(), ..std::mem::take(&mut self.attributes) }
+    pub fn corner_uvs(&self) -> Option<&Attribute> {
+        let mut uvs = self.attributes.of_kind(AttributeKind::Uv);
+        uvs.find(|uvs| uvs.domain == AttributeDomain::Corner)
     }
 }
 

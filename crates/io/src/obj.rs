@@ -1,13 +1,14 @@
 //! Wavefront OBJ.
 
-use crate::attributes::Labels;
 use crate::error::{Fault, Missing, Parsed, Position, ReadErrorKind, check_room};
+use crate::labels::Labels;
 use crate::obj_index::{Corner, References};
-use crate::text::{Text, quote, refuse_nul};
-use crate::{CornerUvs, FaceAttributes, Format, Note, PolygonMesh};
+use crate::text::{Text, parse_number, quote, refuse_nul};
+use crate::{Format, Note, PolygonMesh};
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 
-/// Marks a corner without texture coordinate.
-const NO_UV: u32 = u32::MAX;
+/// Marks a corner without texture coordinate or normal.
+const NONE: u32 = u32::MAX;
 
 /// Statements that name or group things; the rest of their line is a name.
 const GROUPING: [&[u8]; 14] = [
@@ -60,7 +61,11 @@ fn rest(text: &mut Text<'_>) -> Vec<u8> {
 
 struct Reader<'a> {
     mesh: PolygonMesh,
-    uvs: CornerUvs,
+    uvs: Vec<[f64; 2]>,
+    corner_uvs: Vec<u32>,
+    normals: Vec<[f64; 3]>,
+    corner_normals: Vec<u32>,
+    columns: Columns,
     /// Corners that name a `vt` before there is any, with a relative index.
     dangling_uvs: usize,
     uv_not_finite: Option<usize>,
@@ -68,18 +73,26 @@ struct Reader<'a> {
     uv_references: References<'a>,
     polygon: Vec<u32>,
     materials: Labels,
-    object: Vec<u8>,
-    group: Vec<u8>,
+    objects: Labels,
     groups: Labels,
     smoothing: Labels,
     left_out: LeftOut,
 }
 
+/// Numbers after the coordinates of vertices.
+#[derive(Default)]
+struct Columns {
+    values: Vec<f64>,
+    /// Numbers of the first vertex.
+    width: usize,
+    /// Vertices with any.
+    count: usize,
+    is_uneven: bool,
+}
+
 /// What the notes will tell.
 #[derive(Default)]
 struct LeftOut {
-    vertex_columns: usize,
-    normals: usize,
     points: usize,
     free_form: usize,
     unknown: usize,
@@ -90,15 +103,18 @@ impl<'a> Reader<'a> {
     fn new() -> Self {
         Self {
             mesh: PolygonMesh::new(Format::Obj),
-            uvs: CornerUvs::default(),
+            uvs: Vec::new(),
+            corner_uvs: Vec::new(),
+            normals: Vec::new(),
+            corner_normals: Vec::new(),
+            columns: Columns::default(),
             dangling_uvs: 0,
             uv_not_finite: None,
             vertex_references: References::new("vertex"),
             uv_references: References::new("texture coordinate"),
             polygon: Vec::new(),
             materials: Labels::default(),
-            object: Vec::new(),
-            group: Vec::new(),
+            objects: Labels::default(),
             groups: Labels::default(),
             smoothing: Labels::default(),
             left_out: LeftOut::default(),
@@ -112,24 +128,19 @@ impl<'a> Reader<'a> {
             b"vt" => self.texture_coordinate(text)?,
             b"f" | b"fo" => self.face(text, line)?,
             b"l" => self.polyline(text)?,
-            b"vn" => {
-                self.left_out.normals += 1;
-                text.skip_tokens();
-            }
+            b"vn" => self.normal(text),
             b"p" => self.left_out.points += text.skip_tokens(),
-            b"usemtl" => self.materials.set(rest(text)),
-            b"s" => self.smoothing.set(match rest(text) {
-                off if off == b"off" => b"0".to_vec(),
+            b"usemtl" => self.materials.set(&rest(text)),
+            b"mtllib" => {
+                let files = String::from_utf8_lossy(text.rest_of_line()).into_owned();
+                self.mesh.attributes.material_files.push(files);
+            }
+            b"s" => self.smoothing.set(match &*rest(text) {
+                b"off" => b"0",
                 group => group,
             }),
-            b"o" => {
-                self.object = rest(text);
-                self.groups.set(self.path());
-            }
-            b"g" => {
-                self.group = rest(text);
-                self.groups.set(self.path());
-            }
+            b"o" => self.objects.set(&rest(text)),
+            b"g" => self.groups.set(&rest(text)),
             name if GROUPING.contains(&name) => {}
             keyword if FREE_FORM.contains(&keyword) => {
                 self.left_out.free_form +=
@@ -141,34 +152,41 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The names of the object and the groups of the next polygon.
-    fn path(&self) -> Vec<u8> {
-        [&self.object[..], &self.group].join(&b'\n')
-    }
-
     fn vertex(&mut self, text: &mut Text<'a>) -> Parsed<()> {
         check_room(self.mesh.positions.len())?;
         let mut position = [0.0; 3];
         for coordinate in &mut position {
             *coordinate = text.finite("three coordinates after `v`")?;
         }
+        let (vertex, before) = (self.mesh.positions.len(), self.columns.values.len());
         self.mesh.positions.push(position);
-        let mut extra = false;
-        while text.optional_number("a weight or colour")?.is_some() {
-            extra = true;
+        while let Some(number) = text.optional_number("a weight or colour")? {
+            self.columns.values.push(number);
         }
-        self.left_out.vertex_columns += usize::from(extra);
+        let width = self.columns.values.len() - before;
+        if vertex == 0 {
+            self.columns.width = width;
+        }
+        self.columns.count += usize::from(width > 0);
+        self.columns.is_uneven |= width != self.columns.width;
         Ok(())
     }
 
+    /// Normals are no reason to refuse a file.
+    fn normal(&mut self, text: &mut Text<'a>) {
+        let mut numbers = std::iter::from_fn(|| text.token()).map(parse_number);
+        let mut next = || numbers.next().and_then(Result::ok).unwrap_or(f64::NAN);
+        self.normals.push([next(), next(), next()]);
+    }
+
     fn texture_coordinate(&mut self, text: &mut Text<'a>) -> Parsed<()> {
-        check_room(self.uvs.coordinates.len())?;
+        check_room(self.uvs.len())?;
         let u = text.number("a texture coordinate")?;
         let v = text.optional_number("a texture coordinate")?.unwrap_or(0.0);
         if !(u.is_finite() && v.is_finite()) {
             self.uv_not_finite.get_or_insert(text.line());
         }
-        self.uvs.coordinates.push([u, v]);
+        self.uvs.push([u, v]);
         text.skip_tokens();
         Ok(())
     }
@@ -185,30 +203,42 @@ impl<'a> Reader<'a> {
             )?;
             self.polygon.push(vertex);
             let uv = match corner.uv {
-                None => NO_UV,
+                None => NONE,
                 Some(index) => {
-                    let count = self.uvs.coordinates.len();
+                    let count = self.uvs.len();
                     match self.uv_references.resolve(index, token, count, text.here()) {
                         // Some programs write `1/1` without any `vt`: that is no reason to refuse.
                         Err(_) if count == 0 => {
                             self.dangling_uvs += 1;
-                            NO_UV
+                            NONE
                         }
                         resolved => resolved?,
                     }
                 }
             };
-            self.uvs.corners.push(uv);
+            self.corner_uvs.push(uv);
+            self.corner_normals.push(self.normal_index(corner.normal));
         }
         if self.polygon.len() < 3 {
             let found = self.polygon.len();
             return Err(Fault::at(Position::Line(line), ReadErrorKind::TooFewCorners { found }));
         }
         self.mesh.polygons.push(&self.polygon);
-        for labels in [&mut self.materials, &mut self.groups, &mut self.smoothing] {
-            labels.push();
-        }
+        let labels =
+            [&mut self.materials, &mut self.objects, &mut self.groups, &mut self.smoothing];
+        labels.into_iter().for_each(Labels::push);
         Ok(())
+    }
+
+    /// The position of a normal, which need not be there.
+    fn normal_index(&self, index: Option<i64>) -> u32 {
+        let before = i64::try_from(self.normals.len()).unwrap_or(i64::MAX);
+        let target = match index {
+            Some(index) if index < 0 => before.saturating_add(index),
+            Some(index) => index - 1,
+            None => return NONE,
+        };
+        u32::try_from(target).unwrap_or(NONE)
     }
 
     fn polyline(&mut self, text: &mut Text<'a>) -> Parsed<()> {
@@ -247,14 +277,43 @@ impl<'a> Reader<'a> {
             return Err(self.nothing(vertices));
         }
         self.keep_uvs()?;
+        self.keep_colors();
+        self.keep_normals();
         self.write_notes();
-        self.mesh.attributes = FaceAttributes {
-            materials: self.materials.finish(),
-            groups: self.groups.finish(),
-            smoothing: self.smoothing.finish(),
-            uvs: None,
-        };
+        let labels = [
+            self.materials.finish("material"),
+            self.objects.finish("object"),
+            self.groups.finish("group"),
+            self.smoothing.finish("smoothing"),
+        ];
+        self.mesh.attributes.all.extend(labels.into_iter().flatten());
         Ok(self.mesh)
+    }
+
+    /// Keeps what follows the coordinates if all vertices have as many numbers as a colour.
+    fn keep_colors(&mut self) {
+        let Columns { values, width, count, is_uneven } = std::mem::take(&mut self.columns);
+        if !is_uneven && matches!(width, 3 | 4) && values.iter().all(|x| x.is_finite()) {
+            let (domain, kind) = (AttributeDomain::Vertex, AttributeKind::Color);
+            self.mesh.attributes.all.push(Attribute::new("color", domain, kind, width, values));
+        } else if count > 0 {
+            self.mesh.notes.push(Note::VertexColumnsIgnored { count });
+        }
+    }
+
+    /// Keeps the normals if every corner has one.
+    fn keep_normals(&mut self) {
+        let count = self.normals.len();
+        let all = self.corner_normals.iter().all(|&normal| (normal as usize) < count);
+        if all && self.normals.as_flattened().iter().all(|x| x.is_finite()) {
+            let values = std::mem::take(&mut self.normals).into_flattened();
+            let (domain, kind) = (AttributeDomain::Corner, AttributeKind::Normal);
+            let normals = Attribute::new("normal", domain, kind, 3, values);
+            let corners = std::mem::take(&mut self.corner_normals);
+            self.mesh.attributes.all.push(normals.with_rows(corners));
+        } else if count > 0 {
+            self.mesh.notes.push(Note::NormalsIgnored { count });
+        }
     }
 
     /// Why there is no mesh in the file.
@@ -274,9 +333,9 @@ impl<'a> Reader<'a> {
 
     /// Keeps the texture coordinates if every corner has one.
     fn keep_uvs(&mut self) -> Parsed<()> {
-        let count = self.uvs.coordinates.len();
-        let without = self.uvs.corners.iter().filter(|&&corner| corner == NO_UV).count();
-        let corners = self.uvs.corners.len();
+        let count = self.uvs.len();
+        let without = self.corner_uvs.iter().filter(|&&corner| corner == NONE).count();
+        let corners = self.corner_uvs.len();
         if count == 0 {
             let note = Note::TextureCoordinatesIncomplete { without: corners, corners };
             let named = self.dangling_uvs > 0 || without < corners;
@@ -291,7 +350,11 @@ impl<'a> Reader<'a> {
         } else if let Some(line) = self.uv_not_finite {
             Note::TextureCoordinatesNotFinite { line }
         } else {
-            self.mesh.corner_uvs = Some(std::mem::take(&mut self.uvs));
+            let values = std::mem::take(&mut self.uvs).into_flattened();
+            let (domain, kind) = (AttributeDomain::Corner, AttributeKind::Uv);
+            let uvs = Attribute::new("uv", domain, kind, 2, values);
+            let corners = std::mem::take(&mut self.corner_uvs);
+            self.mesh.attributes.all.push(uvs.with_rows(corners));
             return Ok(());
         };
         self.mesh.notes.push(note);
@@ -301,12 +364,6 @@ impl<'a> Reader<'a> {
     fn write_notes(&mut self) {
         let left_out = std::mem::take(&mut self.left_out);
         let notes = &mut self.mesh.notes;
-        if left_out.vertex_columns > 0 {
-            notes.push(Note::VertexColumnsIgnored { count: left_out.vertex_columns });
-        }
-        if left_out.normals > 0 {
-            notes.push(Note::NormalsIgnored { count: left_out.normals });
-        }
         for (kind, count) in
             [("point", left_out.points), ("free-form curve or surface", left_out.free_form)]
         {

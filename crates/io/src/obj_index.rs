@@ -8,6 +8,7 @@ use crate::text::{parse_integer, quote};
 pub(crate) struct Corner {
     pub(crate) vertex: i64,
     pub(crate) uv: Option<i64>,
+    pub(crate) normal: Option<i64>,
 }
 
 impl Corner {
@@ -21,8 +22,8 @@ impl Corner {
         let mut parts = token.split(|&byte| byte == b'/');
         let vertex = parse_integer(parts.next()?)?;
         let uv = optional(parts.next())?;
-        optional(parts.next())?;
-        parts.next().is_none().then_some(Self { vertex, uv })
+        let normal = optional(parts.next())?;
+        parts.next().is_none().then_some(Self { vertex, uv, normal })
     }
 }
 
@@ -106,10 +107,11 @@ mod tests {
 
     #[test]
     fn corners() {
-        assert_eq!(Corner::read(b"3"), Some(Corner { vertex: 3, uv: None }));
+        let corner = |uv, normal| Some(Corner { vertex: 3, uv, normal });
+        assert_eq!(Corner::read(b"3"), corner(None, None));
         assert_eq!(Corner::read(b"3/-1/x"), None);
-        assert_eq!(Corner::read(b"3/-1/2"), Some(Corner { vertex: 3, uv: Some(-1) }));
-        assert_eq!(Corner::read(b"3//2"), Some(Corner { vertex: 3, uv: None }));
+        assert_eq!(Corner::read(b"3/-1/2"), corner(Some(-1), Some(2)));
+        assert_eq!(Corner::read(b"3//2"), corner(None, Some(2)));
         assert_eq!(Corner::read(b"/1"), None);
     }
 

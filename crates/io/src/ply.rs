@@ -1,13 +1,17 @@
 //! Stanford PLY: turns the rows of its elements into a mesh.
 
 use crate::error::{Fault, Missing, Parsed, ReadErrorKind, check_room};
+use crate::ply_attributes::{Table, default_name};
 use crate::ply_data::{Ascii, Binary, Source};
-use crate::ply_header::{Element, Encoding, Header, Kind};
+use crate::ply_header::{Element, Encoding, Header, Kind, Property};
 use crate::text::refuse_nul;
 use crate::{Format, Note, PolygonMesh};
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 
 /// Names of the list of a face's corners.
 const CORNER_LISTS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
+/// The list of the texture coordinates of a face's corners.
+const CORNER_UVS: &str = "texcoord";
 /// The elements that are read.
 const SURFACE: [&str; 3] = ["vertex", "face", STRIPS];
 /// What ends a strip and begins the next one in a list of strips.
@@ -67,6 +71,13 @@ fn read(header: &Header<'_>, source: &mut impl Source) -> Parsed<PolygonMesh> {
         }
     }
     source.finish()?;
+    // Where some faces come in strips the others alone have values.
+    let (n_faces, n_corners) = (mesh.polygons.len(), mesh.polygons.corners().len());
+    mesh.attributes.all.retain(|attribute| match attribute.domain {
+        AttributeDomain::Vertex => true,
+        AttributeDomain::Corner => attribute.rows.len() == n_corners,
+        AttributeDomain::Face => attribute.rows.len() == n_faces,
+    });
     Ok(mesh)
 }
 
@@ -85,6 +96,7 @@ fn vertices(element: &Element, source: &mut impl Source, mesh: &mut PolygonMesh)
             ));
         }
     }
+    let mut table = Table::new(&element.properties, |name| matches!(name, "x" | "y" | "z"));
     for _ in 0..element.count {
         check_room(mesh.positions.len())?;
         source.start_row()?;
@@ -102,13 +114,16 @@ fn vertices(element: &Element, source: &mut impl Source, mesh: &mut PolygonMesh)
                     }
                     position[*axis] = value;
                 }
+                (Kind::Scalar(scalar), None) => table.push(source.value(scalar)?),
                 (kind, _) => source.skip(kind)?,
             }
         }
         source.end_row()?;
         mesh.positions.push(position);
     }
-    note_ignored(element, |name| matches!(name, "x" | "y" | "z"), mesh);
+    let (attributes, not_finite) = table.finish(AttributeDomain::Vertex);
+    mesh.attributes.all.extend(attributes);
+    note_ignored(element, &not_finite, |_| false, mesh);
     Ok(())
 }
 
@@ -139,9 +154,12 @@ fn faces(
         ));
     }
     let is_strip = element.name == STRIPS;
-    let mut corners = Vec::new();
+    // The triangles of a strip have no properties of their own.
+    let mut table = Table::new(&element.properties, |_| is_strip);
+    let (mut corners, mut uvs) = (Vec::new(), CornerUvs::new(is_strip));
     for _ in 0..element.count {
         source.start_row()?;
+        uvs.start_row();
         for property in &element.properties {
             match property.kind {
                 Kind::List { count, item } if &property.name == list => {
@@ -162,17 +180,65 @@ fn faces(
                         }
                     }
                 }
+                Kind::List { count, item } if property.name == CORNER_UVS && !is_strip => {
+                    for _ in 0..source.length(count)? {
+                        uvs.values.push(source.value(item)?);
+                    }
+                }
+                Kind::Scalar(scalar) if !is_strip => table.push(source.value(scalar)?),
                 kind => source.skip(kind)?,
             }
         }
         source.end_row()?;
+        uvs.end_row(corners.len());
         match is_strip {
             true => push_strip(&mut corners, mesh),
             false => mesh.polygons.push(&corners),
         }
     }
-    note_ignored(element, |name| name == list, mesh);
+    let (attributes, mut ignored) = table.finish(AttributeDomain::Face);
+    if is_strip {
+        let scalars = element.properties.iter().filter(|p| matches!(p.kind, Kind::Scalar(_)));
+        ignored.extend(scalars.map(|property| property.name.clone()));
+    }
+    mesh.attributes.all.extend(attributes);
+    let kept = uvs.finish();
+    let has_uvs = kept.is_some();
+    mesh.attributes.all.extend(kept);
+    note_ignored(element, &ignored, |name| name == list || has_uvs && name == CORNER_UVS, mesh);
     Ok(())
+}
+
+/// Texture coordinates of corners: two numbers for each corner of a face.
+struct CornerUvs {
+    values: Vec<f64>,
+    /// Where the row begins.
+    start: usize,
+    is_complete: bool,
+}
+
+impl CornerUvs {
+    fn new(is_strip: bool) -> Self {
+        Self { values: Vec::new(), start: 0, is_complete: !is_strip }
+    }
+
+    fn start_row(&mut self) {
+        self.start = self.values.len();
+    }
+
+    fn end_row(&mut self, corners: usize) {
+        self.is_complete &= self.values.len() - self.start == 2 * corners;
+    }
+
+    /// The attribute, if every corner has its two finite numbers.
+    fn finish(self) -> Option<Attribute> {
+        let is_good = self.is_complete && self.values.iter().all(|x| x.is_finite());
+        let (domain, kind) = (AttributeDomain::Corner, AttributeKind::Uv);
+        is_good.then(|| {
+            Attribute::new(default_name(kind), domain, kind, 2, Vec::new())
+                .with_values(domain, &self.values)
+        })
+    }
 }
 
 /// Adds the triangles of a strip, every second turned over, and clears it. Triangles that use a vertex twice
@@ -223,10 +289,19 @@ fn skip(element: &Element, source: &mut impl Source, mesh: &mut PolygonMesh) -> 
     Ok(())
 }
 
-fn note_ignored(element: &Element, kept: impl Fn(&str) -> bool, mesh: &mut PolygonMesh) {
-    let ignored =
-        element.properties.iter().map(|property| &property.name).filter(|name| !kept(name));
-    let names: Vec<String> = ignored.cloned().collect();
+/// Names the properties that are not kept: some of the single numbers, and lists other than those kept.
+fn note_ignored(
+    element: &Element,
+    numbers: &[String],
+    kept: impl Fn(&str) -> bool,
+    mesh: &mut PolygonMesh,
+) {
+    let is_ignored = |property: &&Property| match property.kind {
+        Kind::Scalar(_) => numbers.contains(&property.name),
+        Kind::List { .. } => !kept(&property.name),
+    };
+    let ignored = element.properties.iter().filter(is_ignored);
+    let names: Vec<String> = ignored.map(|property| property.name.clone()).collect();
     if !names.is_empty() {
         mesh.notes.push(Note::PropertiesIgnored { element: element.name.clone(), names });
     }

@@ -9,7 +9,7 @@ use flate2::read::MultiGzDecoder;
 
 use crate::error::{Fault, Missing, Parsed, ReadErrorKind};
 use crate::text::quote;
-use crate::{Format, Note, PolygonMesh, ReadError, obj, off, ply, stl};
+use crate::{Format, Note, PolygonMesh, ReadError, gltf, obj, off, ply, stl};
 
 /// Reads a mesh file.
 ///
@@ -30,7 +30,8 @@ pub fn read_mesh_as(path: &Path, format: Option<Format>) -> Result<PolygonMesh, 
     let name = path.display().to_string();
     let bytes =
         fs::read(path).map_err(|error| Fault::whole_file(ReadErrorKind::Io(error)).named(&name))?;
-    parse_mesh(&bytes, format.or_else(|| Format::from_path(path)), &name)
+    let format = format.or_else(|| Format::from_path(path));
+    parse(&bytes, format, path.parent()).map_err(|fault| fault.named(&name))
 }
 
 /// Reads a mesh from memory.
@@ -46,10 +47,11 @@ pub fn parse_mesh(
     format: Option<Format>,
     name: &str,
 ) -> Result<PolygonMesh, ReadError> {
-    parse(bytes, format).map_err(|fault| fault.named(name))
+    parse(bytes, format, None).map_err(|fault| fault.named(name))
 }
 
-fn parse(bytes: &[u8], claimed: Option<Format>) -> Parsed<PolygonMesh> {
+/// Parses content whose further files, those of glTF, are in a folder.
+fn parse(bytes: &[u8], claimed: Option<Format>, folder: Option<&Path>) -> Parsed<PolygonMesh> {
     let bytes = &*unpacked(bytes)?;
     refuse_empty_or_packed(bytes)?;
     let format = match claimed {
@@ -64,6 +66,7 @@ fn parse(bytes: &[u8], claimed: Option<Format>) -> Parsed<PolygonMesh> {
         Format::Off => off::parse(bytes),
         Format::Ply => ply::parse(bytes),
         Format::Stl => stl::parse(bytes),
+        Format::Gltf => gltf::parse(bytes, folder),
     }?;
     if let Some(claimed) = claimed
         && claimed != format
@@ -142,7 +145,7 @@ mod tests {
         assert_eq!(fault(b" \r\n"), "a: the file is empty");
         assert!(fault(b"\x1f\x8b\x08").starts_with("a: cannot be read: "));
         assert_eq!(fault(b"\xff\xfev\0"), "a: the text is UTF-16; save it as UTF-8");
-        let unknown = "a: the format is not known (OBJ, OFF, PLY and STL are read); the content starts with `<html>`";
+        let unknown = "a: the format is not known (OBJ, OFF, PLY, STL and glTF are read); the content starts with `<html>`";
         assert_eq!(fault(b"<html>"), unknown);
     }
 

@@ -71,6 +71,14 @@ impl<'a> Text<'a> {
         self.at = self.at.saturating_sub(count);
     }
 
+    /// What is left of this line, where a backslash or `#` means nothing, without blanks around it.
+    pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(|&byte| is_line_end(byte)).unwrap_or(rest.len());
+        self.at += length;
+        rest[..length].trim_ascii()
+    }
+
     /// Moves to the start of the next line; false at the end of the file.
     pub(crate) fn next_line(&mut self) -> bool {
         let rest = &self.bytes[self.at..];

@@ -1,16 +1,29 @@
 //! Whatever the bytes, the readers return: random data, and valid files with random damage.
 
-use proptest::prelude::*;
-use seamstress_io::{Format, PolygonMesh, parse_mesh};
+#![allow(clippy::unwrap_used, reason = "a test, with helpers")]
 
-const FORMATS: [Option<Format>; 5] =
-    [None, Some(Format::Obj), Some(Format::Off), Some(Format::Ply), Some(Format::Stl)];
+use proptest::prelude::*;
+use seamstress_io::attributes::{Attribute, AttributeDomain, AttributeKind, Attributes};
+use seamstress_io::{Format, PolygonMesh, Polymesh, parse_mesh};
+
+const FORMATS: [Option<Format>; 6] = [
+    None,
+    Some(Format::Obj),
+    Some(Format::Off),
+    Some(Format::Ply),
+    Some(Format::Stl),
+    Some(Format::Gltf),
+];
 
 const OBJ: &str = "# c\nv 0 0 0 1\nv 1 0 0\nv 0 1 0 .1 .2 .3\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 -1/1/1\nl 1 2 \\\n 3\n";
 const OFF: &str =
     "COFF # c\n3 2 0\n0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0\n3 0 1 2 0.5 0.5 0.5\n3 0\n2\n1\n";
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
     endfacet\nendsolid a\n";
+const GLTF: &str = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0,"scale":[2,1,1]},{"children":[0]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5121,"count":3,
+"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":9}],"buffers":[{"byteLength":9,
+"uri":"data:application/octet-stream;base64,AAAAAQAAAAEA"}]}"#;
 const PLY: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list char int q\n\
     element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 
@@ -30,7 +43,28 @@ fn samples() -> Vec<Vec<u8>> {
         [0f32, 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0.].map(f32::to_le_bytes).as_flattened(),
     );
     stl.extend([0; 2]);
-    vec![OBJ.into(), OFF.into(), STL.into(), ply_text.into(), ply, stl]
+    vec![OBJ.into(), OFF.into(), STL.into(), ply_text.into(), ply, stl, glb(), GLTF.into()]
+}
+
+/// A triangle with texture coordinates and a material.
+fn glb() -> Vec<u8> {
+    let uv = vec![0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+    let names = vec!["red".to_owned()];
+    let attributes = Attributes::from(vec![
+        Attribute::new("uv", AttributeDomain::Corner, AttributeKind::Uv, 2, uv),
+        Attribute::labels("material", AttributeDomain::Face, names, vec![0]),
+    ]);
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let polygons = [[0, 1, 2]];
+    let mesh = Polymesh {
+        positions: &positions,
+        polygons: &polygons,
+        attributes: &attributes,
+        comments: &[],
+    };
+    let mut bytes = Vec::new();
+    mesh.write(&mut bytes, Format::Gltf).unwrap();
+    bytes
 }
 
 /// Parses in every way and checks what a mesh promises.
@@ -56,10 +90,13 @@ fn check(mesh: &PolygonMesh) {
     assert!(
         mesh.polygons.corners().iter().chain(lines).all(|&vertex| (vertex as usize) < vertices)
     );
-    if let Some(uvs) = &mesh.corner_uvs {
-        assert_eq!(uvs.corners.len(), mesh.polygons.corners().len());
-        assert!(uvs.corners.iter().all(|&uv| (uv as usize) < uvs.coordinates.len()));
-        assert!(uvs.coordinates.as_flattened().iter().all(|x| x.is_finite()));
+    for attribute in &mesh.attributes.all {
+        let n_elements = match attribute.domain {
+            AttributeDomain::Vertex => vertices,
+            AttributeDomain::Corner => mesh.polygons.corners().len(),
+            AttributeDomain::Face => mesh.polygons.len(),
+        };
+        assert_eq!(attribute.check(n_elements), Ok(()));
     }
     for note in &mesh.notes {
         assert!(!note.to_string().is_empty());
@@ -97,7 +134,7 @@ proptest! {
 
     #[test]
     fn damaged_files_return(
-        sample in 0usize..6,
+        sample in 0usize..8,
         damage in proptest::collection::vec((any::<proptest::sample::Index>(), any::<u8>(), 0..3), 1..6),
     ) {
         let mut bytes = samples().swap_remove(sample);

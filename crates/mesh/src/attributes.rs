@@ -1,6 +1,6 @@
 //! What a mesh carries beside its shape: values of its vertices, corners and faces.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// All that a mesh carries.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -10,6 +10,30 @@ pub struct Attributes {
     pub all: Vec<Attribute>,
     /// Files that describe the materials: `mtllib` of OBJ.
     pub material_files: Vec<String>,
+}
+
+impl From<Vec<Attribute>> for Attributes {
+    fn from(all: Vec<Attribute>) -> Self {
+        Self { all, material_files: Vec::new() }
+    }
+}
+
+impl Attributes {
+    /// Nothing.
+    pub const NONE: &Self = &Self { all: Vec::new(), material_files: Vec::new() };
+
+    /// The first of a kind that vertices or corners have, the second, and so on.
+    pub fn of_kind(&self, kind: AttributeKind) -> impl Iterator<Item = &Attribute> {
+        self.all.iter().filter(move |a| a.kind == kind && a.domain != AttributeDomain::Face)
+    }
+
+    /// The labels of faces with a name.
+    pub fn labels(&self, name: &str) -> Option<&Attribute> {
+        let is_label = |a: &&Attribute| {
+            a.kind == AttributeKind::Label && a.domain == AttributeDomain::Face && a.name == name
+        };
+        self.all.iter().find(is_label)
+    }
 }
 
 /// What has a value of an attribute.
@@ -71,6 +95,12 @@ impl Attribute {
         let n_rows = values.len().checked_div(width).unwrap_or_default();
         let rows = (0..n_rows as u32).collect();
         Self { name: name.into(), domain, kind, width, values, rows, names: Vec::new() }
+    }
+
+    /// The same values with another row for each element.
+    #[must_use]
+    pub fn with_rows(self, rows: Vec<u32>) -> Self {
+        Self { rows, ..self }
     }
 
     /// Labels: the name of each element by its number.
@@ -147,6 +177,53 @@ impl Attribute {
         Some(Self { domain: AttributeDomain::Vertex, rows, ..self.clone() })
     }
 
+    /// One of corners as one of vertices with the means of their corners; `corners` has their vertices.
+    #[must_use]
+    pub fn averaged(&self, corners: &[u32], n_vertices: usize) -> Self {
+        let mut values = vec![0.0; n_vertices * self.width];
+        let mut counts = vec![0u32; n_vertices];
+        for (&row, &vertex) in self.rows.iter().zip(corners) {
+            counts[vertex as usize] += 1;
+            let sum = &mut values[vertex as usize * self.width..];
+            sum.iter_mut().zip(self.row(row)).for_each(|(sum, x)| *sum += x);
+        }
+        for (row, &count) in values.chunks_exact_mut(self.width.max(1)).zip(&counts) {
+            row.iter_mut().for_each(|x| *x /= f64::from(count.max(1)));
+        }
+        Self::new(self.name.clone(), AttributeDomain::Vertex, self.kind, self.width, values)
+    }
+
+    /// The edges of polygons at which it differs on both sides, each once, by its ends.
+    #[must_use]
+    pub fn borders<'a>(&self, polygons: impl IntoIterator<Item = &'a [u32]>) -> Vec<[u32; 2]> {
+        let is_of_corners = self.domain == AttributeDomain::Corner;
+        let mut seen: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
+        let mut borders = Vec::new();
+        let mut corner = 0;
+        let is_same = |a: u32, b: u32| a == b || (self.width > 0 && self.row(a) == self.row(b));
+        for (polygon, vertices) in polygons.into_iter().enumerate() {
+            for (k, &from) in vertices.iter().enumerate() {
+                let next = (k + 1) % vertices.len();
+                let to = vertices[next];
+                let ends = match is_of_corners {
+                    true => [corner + k, corner + next],
+                    false => [polygon, polygon],
+                };
+                let rows = ends.map(|element| self.rows[element]);
+                let side = if from < to { rows } else { [rows[1], rows[0]] };
+                let edge = [from.min(to), from.max(to)];
+                let other = *seen.entry(edge).or_insert(side);
+                if !(is_same(other[0], side[0]) && is_same(other[1], side[1])) {
+                    borders.push(edge);
+                }
+            }
+            corner += vertices.len();
+        }
+        borders.sort_unstable();
+        borders.dedup();
+        borders
+    }
+
     /// Why it is none of a mesh with so many elements of its domain.
     ///
     /// # Errors
@@ -195,6 +272,24 @@ mod tests {
         let of_vertices: Vec<f64> = (0..5).map(|v| smooth.of(v)[0]).collect();
         assert_eq!(of_vertices, [5.0, 6.0, 7.0, 8.0, 5.0]);
         assert_eq!(corners(&[5.0, 6.0, 7.0, 7.5, 6.0, 8.0]).by_vertex(&vertices, 4), None);
+    }
+
+    #[test]
+    fn corners_may_be_averaged() {
+        let mean = corners(&[5.0, 6.0, 7.0, 9.0, 6.0, 8.0]).averaged(&[0, 1, 2, 2, 1, 3], 5);
+        assert_eq!(mean.values, [5.0, 6.0, 8.0, 8.0, 0.0]);
+    }
+
+    #[test]
+    fn borders_are_where_values_differ() {
+        // Three squares in a row.
+        let squares: [&[u32]; 3] = [&[0, 2, 3, 1], &[2, 4, 5, 3], &[4, 6, 7, 5]];
+        let names = ["red", "blue"].map(String::from).to_vec();
+        let label = Attribute::labels("material", AttributeDomain::Face, names, vec![0, 1, 1]);
+        assert_eq!(label.borders(squares), [[2, 3]]);
+        // Between the first two other rows with equal values; then another value at one end.
+        let values = [0.0, 1.0, 2.0, 3.0, 1.0, 7.0, 8.0, 2.0, 7.0, 9.0, 9.0, 5.0];
+        assert_eq!(corners(&values).borders(squares), [[4, 5]]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::json::options;
 use crate::quads::CrossField;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes};
-use seamstress::{Described, Error, SeamlessMap, TextureOptions};
+use seamstress::{Described, Error, SeamlessMap, TextureOptions, UvSet};
 use serde::Serialize;
 
 /// A certified seamless map.
@@ -17,7 +17,7 @@ pub(crate) struct Map(Box<dyn Mapped>);
 trait Mapped: Send + Sync {
     fn parts(&self) -> Parts<'_>;
     fn report(&self) -> serde_json::Result<String>;
-    fn obj(&self) -> std::io::Result<Vec<u8>>;
+    fn file(&self, name: &str) -> std::io::Result<Vec<u8>>;
     fn pictures(&self, texture: &TextureOptions) -> Result<[Vec<u8>; 3], Error>;
     fn field(&self) -> Result<seamstress::CrossField, Error>;
 }
@@ -46,9 +46,9 @@ impl<R: Described + Serialize + Send + Sync> Mapped for SeamlessMap<R> {
         serde_json::to_string(SeamlessMap::report(self))
     }
 
-    fn obj(&self) -> std::io::Result<Vec<u8>> {
+    fn file(&self, name: &str) -> std::io::Result<Vec<u8>> {
         let mut content = Vec::new();
-        self.write_to(&mut content)?;
+        self.write_as(name, UvSet::First, &mut content)?;
         Ok(content)
     }
 
@@ -109,9 +109,9 @@ impl Map {
         self.0.report().map_err(|cause| errors::internal(py, &cause.to_string()))
     }
 
-    /// The content of a file of any name: OBJ.
-    fn file<'py>(&self, py: Python<'py>, _name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &py.detach(|| self.0.obj())?))
+    /// The content of a file of this name: OBJ or GLB.
+    fn file<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &py.detach(|| self.0.file(name))?))
     }
 
     /// Front, back and layout, as PNG files; options as JSON.

@@ -71,7 +71,7 @@ impl Quads {
         json(py, self.0.report())
     }
 
-    /// The content of a file of this name: OBJ, OFF, PLY or STL.
+    /// The content of a file of this name: OBJ, OFF, PLY, STL or GLB.
     fn file<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
         let mut content = Vec::new();
         py.detach(|| self.0.write_as(name, &mut content))?;

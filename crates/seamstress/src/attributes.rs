@@ -3,10 +3,27 @@
 use crate::error::{Error, ErrorKind};
 use crate::quads::QuadMesh;
 use crate::surface::Surface;
-use seamstress_mesh::attributes::{Attribute, AttributeDomain};
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, Attributes};
 use seamstress_quads::Transfer;
+use std::sync::Arc;
 
 impl Surface {
+    /// What its file says of its vertices, corners and faces beside their places: texture coordinates, colours, normals,
+    /// materials, groups and other properties, for the vertices, corners and polygons of the input.
+    pub fn attributes(&self) -> &Attributes {
+        &self.attributes
+    }
+
+    /// The same surface with other attributes, for the vertices, corners and polygons of the input.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Options`] where one does not fit.
+    pub fn with_attributes(mut self, attributes: Attributes) -> Result<Self, Error> {
+        attributes.all.iter().try_for_each(|attribute| self.check(attribute))?;
+        self.attributes = Arc::new(attributes);
+        Ok(self)
+    }
+
     fn check(&self, attribute: &Attribute) -> Result<(), Error> {
         let parts = self.parts();
         let n_elements = match attribute.domain {
@@ -15,6 +32,15 @@ impl Surface {
             AttributeDomain::Face => parts.polygons.len(),
         };
         attribute.check(n_elements).map_err(|text| Error::options(text).of(self.input()))
+    }
+
+    /// What the input carries, for this surface's vertices, triangle corners and triangles.
+    #[cfg(feature = "io")]
+    pub(crate) fn attributes_on_triangles(&self) -> Attributes {
+        let all = self.attributes.all.iter().map(|attribute| self.on_triangles(attribute));
+        let mut attributes = Attributes::from(all.collect::<Vec<_>>());
+        attributes.material_files.clone_from(&self.attributes.material_files);
+        attributes
     }
 
     /// An attribute of the input as one of this surface's vertices, triangle corners or triangles.
@@ -66,6 +92,19 @@ impl Surface {
 }
 
 impl QuadMesh {
+    /// What the surface carries, brought over to the quads, as [`QuadMesh::transfer`] does; but what has the same value at
+    /// all corners of every vertex is an attribute of vertices, and what has not one of corners.
+    ///
+    /// # Errors
+    /// A fault of this program.
+    pub fn attributes(&self) -> Result<Attributes, Error> {
+        let carried = self.surface().attributes();
+        let all = self.carry(&carried.all, |_, on_triangles| on_triangles.domain)?;
+        let mut attributes = Attributes::from(all);
+        attributes.material_files.clone_from(&carried.material_files);
+        Ok(attributes)
+    }
+
     /// Attributes of the input of the surface, brought over to the quads.
     ///
     /// Values of vertices are those of the surface where a vertex lies. A quad takes the values of its corners from one
@@ -77,6 +116,15 @@ impl QuadMesh {
     /// [`ErrorKind::Options`] where one does not fit the input.
     pub fn transfer(&self, attributes: &[Attribute]) -> Result<Vec<Attribute>, Error> {
         attributes.iter().try_for_each(|attribute| self.surface().check(attribute))?;
+        self.carry(attributes, |given, _| given.domain)
+    }
+
+    /// Brings attributes over to what is chosen by the attribute as it is given, and as it is on the triangles.
+    fn carry(
+        &self,
+        attributes: &[Attribute],
+        to: impl Fn(&Attribute, &Attribute) -> AttributeDomain,
+    ) -> Result<Vec<Attribute>, Error> {
         if attributes.is_empty() {
             return Ok(Vec::new());
         }
@@ -88,7 +136,8 @@ impl QuadMesh {
             Error::new(ErrorKind::Internal, text).of(surface.input())
         })?;
         let carry = |attribute: &Attribute| {
-            transfer.carry(&surface.on_triangles(attribute), attribute.domain)
+            let on_triangles = surface.on_triangles(attribute);
+            transfer.carry(&on_triangles, to(attribute, &on_triangles))
         };
         Ok(attributes.iter().map(carry).collect())
     }

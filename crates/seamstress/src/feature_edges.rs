@@ -5,9 +5,8 @@ use crate::feature_sources::FeatureSource;
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::surface::Surface;
-#[cfg(feature = "io")]
-use seamstress_io::Attribute;
 use seamstress_mesh::Halfedge;
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_mesh::features::{EdgeFinder, EdgeNameError, EdgeSet, creases, sharp_edges};
 
 /// Faulty names of a source that its error lists.
@@ -85,15 +84,12 @@ impl<'a> Namer<'a> {
                     lines.map(|l| Named { pair: self.side(l.face, l.side), name: at_line(l.line) });
                 self.find(Some(&file.display().to_string()), named.collect())
             }
-            #[cfg(feature = "io")]
-            FeatureSource::Material => self.borders(Attribute::Material, "`usemtl` statements"),
-            #[cfg(feature = "io")]
-            FeatureSource::Group => self.borders(Attribute::Group, "`g` or `o` statements"),
-            #[cfg(feature = "io")]
-            FeatureSource::Smoothing => self.borders(Attribute::Smoothing, "`s` statements"),
-            #[cfg(feature = "io")]
+            FeatureSource::Material => self.label_borders(&["material"], "materials"),
+            FeatureSource::Group => self.label_borders(&["group", "object"], "groups or objects"),
+            FeatureSource::Smoothing => self.label_borders(&["smoothing"], "smoothing groups"),
             FeatureSource::UvSeams => {
-                self.borders(Attribute::Uvs, "a texture coordinate at every corner")
+                let uvs = surface.attributes().of_kind(AttributeKind::Uv).next();
+                self.borders(uvs, "a texture coordinate at every corner")
             }
             #[cfg(not(feature = "io"))]
             _ => Err(Error::options(format!("features: {source} needs the feature `io`"))),
@@ -110,22 +106,38 @@ impl<'a> Namer<'a> {
         Ok(lines.iter().map(named).collect())
     }
 
-    /// The edges at which an attribute differs on both sides.
-    #[cfg(feature = "io")]
-    fn borders(&self, attribute: Attribute, statements: &str) -> Result<EdgeSet, Error> {
+    /// The edges at which labels of these names differ on both sides.
+    fn label_borders(&self, names: &[&str], what: &str) -> Result<EdgeSet, Error> {
+        let attributes = self.surface.attributes();
+        self.borders(names.iter().filter_map(|name| attributes.labels(name)), what)
+    }
+
+    /// The edges at which one of some attributes differs on both sides.
+    fn borders<'b>(
+        &self,
+        attributes: impl IntoIterator<Item = &'b Attribute>,
+        what: &str,
+    ) -> Result<EdgeSet, Error> {
         let parts = self.surface.parts();
-        if !parts.attributes.has(attribute) {
-            let text =
-                format!("these features need an OBJ file with {statements}, and this has none");
+        let mut attributes = attributes.into_iter().peekable();
+        if attributes.peek().is_none() {
+            let text = format!("these features need a mesh with {what}, and this has none");
             return Err(Error::new(ErrorKind::BadFeatures, text).of(self.surface.input()));
         }
         let merged = parts.merged_into.as_deref();
         let now = |&v: &u32| merged.map_or(v, |into| into[v as usize]);
         let polygons: Vec<Vec<u32>> =
             parts.polygons.iter().map(|polygon| polygon.iter().map(now).collect()).collect();
-        let borders = parts.attributes.borders(polygons.iter().map(Vec::as_slice), attribute);
+        let borders = attributes.flat_map(|attribute| {
+            let corners = parts.polygons.corners().iter().map(|&v| v as usize);
+            let attribute = match attribute.domain {
+                AttributeDomain::Vertex => &attribute.on(AttributeDomain::Corner, corners),
+                _ => attribute,
+            };
+            attribute.borders(polygons.iter().map(Vec::as_slice))
+        });
         // Repairs may have dropped a polygon at such an edge.
-        let edges = borders.into_iter().filter_map(|pair| self.finder.find(pair).ok()).flatten();
+        let edges = borders.filter_map(|pair| self.finder.find(pair).ok()).flatten();
         Ok(EdgeSet::new(self.surface.mesh(), edges))
     }
 

@@ -28,9 +28,9 @@ impl From<WriteError> for Error {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Output {
-    /// A map, as OBJ.
+    /// A map, as OBJ or GLB.
     Map,
-    /// Quads, as OBJ, OFF, PLY or STL.
+    /// Quads, as OBJ, OFF, PLY, STL or GLB.
     Quads,
     /// A picture, as PNG.
     Picture,
@@ -44,8 +44,8 @@ impl Output {
     /// [`ErrorKind::Unwritable`].
     pub fn check_name(self, path: &Path) -> Result<(), Error> {
         let (what, endings) = match self {
-            Self::Map => ("maps", &["obj"][..]),
-            Self::Quads => ("quad meshes", &["obj", "off", "ply", "stl"][..]),
+            Self::Map => ("maps", &["obj", "glb"][..]),
+            Self::Quads => ("quad meshes", &["obj", "off", "ply", "stl", "glb"][..]),
             Self::Picture => ("pictures", &["png"][..]),
         };
         let name = match seamstress_io::is_compressed(path) {

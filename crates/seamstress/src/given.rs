@@ -34,7 +34,9 @@ impl MapFile {
         let bad = |text: &str| {
             Err(Error::new(ErrorKind::NotAMap, text).at_stage(Some(Stage::Files)).of(Some(&input)))
         };
-        let Some(corners) = mesh.corner_uvs.take() else {
+        // They are the map, not something that its mesh carries.
+        let corners = mesh.corner_uvs().cloned();
+        let Some(corners) = corners else {
             let mut text = String::from(
                 "not a map: a map is an OBJ file with a texture coordinate at every corner of every face",
             );
@@ -52,9 +54,11 @@ impl MapFile {
                 larger.unwrap_or_default()
             ));
         };
-        let face_uvs = corners.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        mesh.attributes.all.retain(|attribute| *attribute != corners);
+        let face_uvs = corners.rows.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        let uvs = corners.values.chunks_exact(2).map(|uv| [uv[0], uv[1]]).collect();
         let positions = mesh.positions.clone();
-        Ok(Self { input, positions, faces, uvs: corners.coordinates, face_uvs, mesh })
+        Ok(Self { input, positions, faces, uvs, face_uvs, mesh })
     }
 
     /// The UVs.

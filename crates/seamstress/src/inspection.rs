@@ -6,6 +6,7 @@ use crate::mesh_format::MeshFormat;
 use crate::polygons::Polygons;
 use crate::report::SurfaceReport;
 use crate::words::{counted, rounded};
+use seamstress_mesh::attributes::Attributes;
 use seamstress_mesh::soup::{
     self, Facts, Fault, Merged, Repair, TriangleSoup, Triangulation, TriangulationNotes,
 };
@@ -122,9 +123,8 @@ pub(crate) struct Parts {
     pub(crate) polygons: Polygons,
     /// Segments of the `l` elements of an OBJ file.
     pub(crate) lines: Vec<[u32; 2]>,
-    /// What the file says of the polygons.
-    #[cfg(feature = "io")]
-    pub(crate) attributes: seamstress_io::FaceAttributes,
+    /// What the input carries.
+    pub(crate) attributes: Attributes,
     pub(crate) n_input_vertices: usize,
     pub(crate) soup: TriangleSoup,
     /// For each vertex of the input the one that it was merged into; none if no vertices were merged.
@@ -136,7 +136,7 @@ pub(crate) struct Parts {
 }
 
 impl Inspection {
-    /// Reads and checks a mesh: OBJ, OFF, PLY or STL.
+    /// Reads and checks a mesh: OBJ, OFF, PLY, STL or glTF.
     ///
     /// # Errors
     /// [`ErrorKind::Unreadable`]. A mesh with faults is no error here.
@@ -146,8 +146,8 @@ impl Inspection {
         Ok(Self::of_mesh(path, crate::files::read_mesh(path, options.format)?, options))
     }
 
-    /// Checks a mesh that is in memory as a file: OBJ, OFF, PLY or STL, as its content says. The name stands for it
-    /// in messages and reports, and the format of the options or its ending decides where the content is unclear.
+    /// Checks a mesh that is in memory as a file: OBJ, OFF, PLY, STL or glTF, as its content says. The name stands for
+    /// it in messages and reports, and the format of the options or its ending decides where the content is unclear.
     ///
     /// # Errors
     /// [`ErrorKind::Unreadable`].
@@ -167,13 +167,13 @@ impl Inspection {
     #[cfg(feature = "io")]
     pub(crate) fn of_mesh(
         path: &Path,
-        mut read: seamstress_io::PolygonMesh,
+        read: seamstress_io::PolygonMesh,
         options: &SurfaceOptions,
     ) -> Self {
         let input = Given {
             input: Some(path.display().to_string()),
             format: Some(read.format.to_string()),
-            attributes: read.take_attributes(),
+            attributes: read.attributes,
             lines: read.lines,
             notes: read.notes.iter().map(ToString::to_string).collect(),
         };
@@ -225,7 +225,6 @@ impl Inspection {
             input: given.input,
             polygons,
             lines: given.lines,
-            #[cfg(feature = "io")]
             attributes: given.attributes,
             n_input_vertices: positions.len(),
             soup: checked.soup,
@@ -299,8 +298,7 @@ struct Given {
     input: Option<String>,
     format: Option<String>,
     lines: Vec<[u32; 2]>,
-    #[cfg(feature = "io")]
-    attributes: seamstress_io::FaceAttributes,
+    attributes: Attributes,
     notes: Vec<String>,
 }
 

@@ -112,7 +112,7 @@ pub use inspection::{Inspection, SurfaceOptions, Weld};
 pub use integer::{GridReport, IntegerGridMap, IntegerMapReport};
 #[doc(hidden)]
 pub use map::Described;
-pub use map::{MapReport, SeamlessMap};
+pub use map::{MapReport, SeamlessMap, UvSet};
 pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
@@ -143,7 +143,7 @@ pub use surface::Surface;
 #[cfg(feature = "io")]
 #[doc(hidden)]
 pub use seamstress_io::AtomicFile;
-pub use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
+pub use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind, Attributes};
 pub use seamstress_parametrize::MixedIntegerStats;
 pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 pub use seamstress_parametrize::quality::Measure;

@@ -10,6 +10,8 @@ use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_mesh::Vertex;
+#[cfg(feature = "io")]
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
     self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Violations,
@@ -55,6 +57,18 @@ pub struct MapReport {
     /// The features asked for and what became of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub features: Option<FeatureReport>,
+}
+
+/// Which texture coordinates a map is in a file that may have several, where its mesh has some of its own: GLB. OBJ files
+/// have one, and it is the map.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum UvSet {
+    /// The first, before those of the mesh
+    #[default]
+    First,
+    /// The second, after the first of the mesh
+    Second,
 }
 
 /// What a map is called and how it is drawn, by its report.
@@ -179,21 +193,30 @@ impl<R> SeamlessMap<R> {
 
 #[cfg(feature = "io")]
 impl<R: Described> SeamlessMap<R> {
-    /// Writes it as OBJ, with the positions and faces of the surface; the file appears when it is complete.
+    /// Writes it as OBJ or GLB, by the ending of the name, with the positions, faces and attributes of the surface; the
+    /// file appears when it is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`].
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        crate::files::Output::Map.write(path.as_ref(), |file| self.write_to(file))
+        let path = path.as_ref();
+        let write = |file: &mut _| self.write_as(path, UvSet::First, file);
+        crate::files::Output::Map.write(path, write)
     }
 
-    /// Writes it as OBJ.
+    /// Writes it in the format that a file of this name has: OBJ or GLB. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
+    pub fn write_as(
+        &self,
+        name: impl AsRef<Path>,
+        set: UvSet,
+        writer: &mut impl io::Write,
+    ) -> io::Result<()> {
         let lines = self.report.lines();
-        write_map(writer, &self.surface, R::TITLE, self.corner_uvs(), &lines)
+        let uvs = (self.corner_uvs(), set);
+        write_map(writer, name.as_ref(), &self.surface, R::TITLE, uvs, &lines)
     }
 }
 
@@ -209,21 +232,36 @@ impl Distortion {
     }
 }
 
-/// A map of a surface as OBJ, with its title, its source and more in comments.
+/// A map of a surface, and what the surface carries, with its title, its source and more in comments.
 #[cfg(feature = "io")]
 pub(crate) fn write_map(
     writer: &mut impl io::Write,
+    name: &Path,
     surface: &Surface,
     title: &str,
-    corner_uvs: &[[f64; 2]],
+    (corner_uvs, set): (&[[f64; 2]], UvSet),
     lines: &[String],
 ) -> io::Result<()> {
     let mut comments = vec![format!("{title} by Seamstress {VERSION}")];
     comments.extend(source_line(surface));
     comments.extend_from_slice(lines);
-    let (positions, faces) = (surface.positions(), surface.faces());
-    let map = seamstress_io::MapObj { positions, faces, corner_uvs, comments: &comments };
-    seamstress_io::write_map_obj(writer, &map)
+    let (positions, polygons) = (surface.positions(), surface.faces());
+    let corners = CornerUvs::new(polygons, corner_uvs);
+    let uvs = Attribute::new(
+        "map",
+        AttributeDomain::Corner,
+        AttributeKind::Uv,
+        2,
+        corners.uvs.into_flattened(),
+    );
+    let format = seamstress_io::Format::from_path(name).unwrap_or(seamstress_io::Format::Obj);
+    let mut attributes = surface.attributes_on_triangles();
+    let is_second = set == UvSet::Second && format == seamstress_io::Format::Gltf;
+    let first = attributes.all.iter().position(|a| a.kind == AttributeKind::Uv);
+    let place = first.filter(|_| is_second).map_or(0, |first| first + 1);
+    attributes.all.insert(place, uvs.with_rows(corners.faces.into_flattened()));
+    let (attributes, comments) = (&attributes, &comments[..]);
+    seamstress_io::Polymesh { positions, polygons, attributes, comments }.write(writer, format)
 }
 
 /// Where a surface comes from, for the head of a file.

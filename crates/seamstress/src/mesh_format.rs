@@ -13,6 +13,7 @@ pub enum MeshFormat {
     Off,
     Ply,
     Stl,
+    Gltf,
 }
 
 #[cfg(feature = "io")]
@@ -23,6 +24,7 @@ impl From<MeshFormat> for seamstress_io::Format {
             MeshFormat::Off => Self::Off,
             MeshFormat::Ply => Self::Ply,
             MeshFormat::Stl => Self::Stl,
+            MeshFormat::Gltf => Self::Gltf,
         }
     }
 }

@@ -270,7 +270,8 @@ impl QuadMesh {
         &self.report
     }
 
-    /// Writes it as OBJ, OFF, PLY or STL (two triangles a quad), by the ending of the name; the file appears when it is complete.
+    /// Writes it as OBJ, OFF, PLY, or STL or GLB (two triangles a quad), by the ending of the name, with what the surface
+    /// carries and the format holds; the file appears when it is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`].
@@ -280,7 +281,7 @@ impl QuadMesh {
         crate::files::Output::Quads.write(path, |file| self.write_as(path, file))
     }
 
-    /// Writes it in the format that a file of this name has: OBJ, OFF, PLY or STL. OBJ if it says none.
+    /// Writes it in the format that a file of this name has: OBJ, OFF, PLY, STL or GLB. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.
@@ -289,8 +290,9 @@ impl QuadMesh {
         let mut comments = vec![format!("Quad mesh by Seamstress {VERSION}")];
         comments.extend(crate::map::source_line(&self.surface));
         comments.push(counted(self.quads().len(), "quad"));
-        let (positions, polygons) = (self.positions(), self.quads());
-        let mesh = seamstress_io::Polymesh { positions, polygons, comments: &comments };
+        let attributes = &self.attributes().map_err(io::Error::other)?;
+        let (positions, polygons, comments) = (self.positions(), self.quads(), &comments[..]);
+        let mesh = seamstress_io::Polymesh { positions, polygons, attributes, comments };
         let format = seamstress_io::Format::from_path(name.as_ref());
         mesh.write(writer, format.unwrap_or(seamstress_io::Format::Obj))
     }

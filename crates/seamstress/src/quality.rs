@@ -75,7 +75,7 @@ pub enum QuadMetric {
 }
 
 impl PolygonMesh {
-    /// Reads a mesh: OBJ, OFF, PLY or STL.
+    /// Reads a mesh: OBJ, OFF, PLY, STL or glTF.
     ///
     /// # Errors
     /// [`ErrorKind::Unreadable`], and [`ErrorKind::NotQuads`] if it has no faces.

@@ -5,6 +5,7 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
+use seamstress_mesh::attributes::Attributes;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::{Violation, Violations};
@@ -21,6 +22,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Surface {
     inner: Arc<Inner>,
+    pub(crate) attributes: Arc<Attributes>,
     context: Context,
 }
 
@@ -37,19 +39,20 @@ impl Inspection {
     /// # Errors
     /// [`ErrorKind::NotASurface`], with every fault.
     pub fn surface(self) -> Result<Surface, Error> {
-        let (parts, report) = self.into_parts()?;
+        let (mut parts, report) = self.into_parts()?;
+        let attributes = Arc::new(std::mem::take(&mut parts.attributes));
         let soup = &parts.soup;
         let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
             Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
         })?;
         let metric = Metric::from_positions(&mesh, &soup.positions);
         let inner = Arc::new(Inner { parts, report, mesh, metric });
-        Ok(Surface { inner, context: Context::default() })
+        Ok(Surface { inner, attributes, context: Context::default() })
     }
 }
 
 impl Surface {
-    /// Reads a surface: OBJ, OFF, PLY or STL.
+    /// Reads a surface: OBJ, OFF, PLY, STL or glTF.
     ///
     /// # Errors
     /// [`ErrorKind::Unreadable`] and [`ErrorKind::NotASurface`].
@@ -151,7 +154,7 @@ impl Surface {
         let input = self.inner.parts.input.clone();
         let parts = Parts { input, vertex_origin, face_origin, soup, ..Parts::default() };
         let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
-        Ok(Self { inner, context: self.context.clone() })
+        Ok(Self { inner, attributes: Arc::default(), context: self.context.clone() })
     }
 
     /// Positions, #V by 3, mesh units.

@@ -133,3 +133,189 @@ fn values_that_do_not_fit_are_refused() {
     assert_eq!(error.kind(), ErrorKind::Options);
     assert_eq!(error.to_string(), "values: values for 3 corners; the mesh has 376");
 }
+
+#[cfg(feature = "io")]
+mod files {
+    use super::*;
+    use seamstress::{Inspection, MapOptions, SurfaceOptions, UvSet};
+    use std::fmt::Write;
+
+    fn read(content: &[u8], name: &str) -> Surface {
+        let options = SurfaceOptions::default();
+        Inspection::of_file_content(content, name, &options).unwrap().surface().unwrap()
+    }
+
+    /// The block with UVs, colours, an object, two materials and their file.
+    fn painted() -> Surface {
+        let (positions, polygons) = block();
+        let mut text = String::from("mtllib paint.mtl\no block\n");
+        for [x, y, z] in &positions {
+            writeln!(text, "v {x} {y} {z} {} {} {}", x / 5.0, y / 4.0, z / 3.0).unwrap();
+        }
+        let mut n_uvs = 0;
+        for polygon in &polygons {
+            let corners = polygon.map(|v| positions[v as usize]);
+            let side = side(&corners);
+            writeln!(text, "usemtl {}", if side == 5 { "chrome" } else { "rust" }).unwrap();
+            for p in corners {
+                let [u, v] = box_uv(side, p);
+                writeln!(text, "vt {u} {v}").unwrap();
+            }
+            let [a, b, c, d] =
+                [0, 1, 2, 3].map(|k| format!("{}/{}", polygon[k] + 1, n_uvs + k + 1));
+            writeln!(text, "f {a} {b} {c} {d}").unwrap();
+            n_uvs += 4;
+        }
+        read(text.as_bytes(), "block.obj")
+    }
+
+    fn named<'a>(surface: &'a Surface, name: &str) -> &'a Attribute {
+        surface.attributes().all.iter().find(|a| a.name == name).unwrap()
+    }
+
+    /// Checks what has been read, whose polygons have these corners, three or four each.
+    fn check(surface: &Surface, corners: &[Point], size: usize, name: &str) {
+        let uv = named(surface, "uv");
+        let (mut chrome, mut whole) = (0.0, 0.0);
+        for (face, polygon) in corners.chunks_exact(size).enumerate() {
+            let side = side(polygon);
+            for (k, &p) in polygon.iter().enumerate() {
+                let (found, expected) = (uv.of(size * face + k), box_uv(side, p));
+                let gap = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
+                assert!(gap < 1e-5, "{name}: polygon {face}: {found:?}, not {expected:?}");
+            }
+            let last = polygon[size - 1];
+            let area = area(&[polygon[0], polygon[1], polygon[2], last]);
+            let material = named(surface, "material");
+            // A PLY file tells names by their numbers, in their order.
+            let label = match material.names.get(material.rows[face] as usize) {
+                Some(name) => f64::from(u8::from(name == "chrome")),
+                None => material.of(face)[0],
+            };
+            chrome += if label == 1.0 { area } else { 0.0 };
+            whole += area;
+        }
+        // The share of the top in the surface.
+        assert!((chrome / whole - 20.0 / 94.0).abs() < 0.01 * 20.0 / 94.0, "{name}: {chrome}");
+        let colour = named(surface, "color");
+        let of = |face: usize, k: usize| match colour.domain {
+            AttributeDomain::Corner => colour.of(size * face + k),
+            _ => colour.of(surface.faces()[face][k] as usize),
+        };
+        for face in 0..surface.faces().len() {
+            for k in (0..3).filter(|_| size == 3 || colour.domain == AttributeDomain::Vertex) {
+                let p = surface.positions()[surface.faces()[face][k] as usize];
+                let expected = [p[0] / 5.0, p[1] / 4.0, p[2] / 3.0];
+                let near = of(face, k).iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.003);
+                assert!(near, "{name}: {:?}, not {expected:?}", of(face, k));
+            }
+        }
+    }
+
+    #[test]
+    fn quads_carry_what_the_file_said_in_each_format() {
+        let surface = painted();
+        let quads = surface.quad_mesh(&QuadOptions::count(400)).unwrap();
+        let corners = quads.quads().as_flattened().iter().map(|&v| quads.positions()[v as usize]);
+        let corners: Vec<Point> = corners.collect();
+        for name in ["q.obj", "q.ply", "q.glb"] {
+            let mut bytes = Vec::new();
+            quads.write_as(name, &mut bytes).unwrap();
+            let again = read(&bytes, name);
+            match name {
+                "q.glb" => {
+                    let of_faces = again.faces().as_flattened();
+                    let corners = of_faces.iter().map(|&v| again.positions()[v as usize]);
+                    let corners: Vec<Point> =
+                        corners.map(|p| p.map(|x| (x * 1e6).round() / 1e6)).collect();
+                    check(&again, &corners, 3, name);
+                }
+                _ => check(&again, &corners, 4, name),
+            }
+            if name == "q.obj" {
+                assert_eq!(again.attributes().material_files, ["paint.mtl"]);
+                assert_eq!(again.attributes().labels("object").unwrap().names, ["block"]);
+            }
+        }
+    }
+
+    #[test]
+    fn maps_keep_what_the_file_said() {
+        let surface = painted();
+        let map = surface.parametrize(&MapOptions::default()).unwrap();
+        let mut text = Vec::new();
+        map.write_as("m.obj", UvSet::Second, &mut text).unwrap();
+        let obj = read(&text, "m.obj");
+        // OBJ has one set of UVs: the map.
+        let uv = named(&obj, "uv");
+        for (corner, expected) in map.corner_uvs().iter().enumerate() {
+            assert_eq!(uv.of(corner), expected);
+        }
+        assert_eq!(named(&obj, "color").values, named(&surface, "color").values);
+        let chrome = named(&obj, "material").rows.iter().filter(|&&row| row == 1).count();
+        assert_eq!(chrome, 2 * 20);
+        assert_eq!(obj.attributes().material_files, ["paint.mtl"]);
+        for (set, ours, theirs) in [(UvSet::First, "uv", "uv1"), (UvSet::Second, "uv1", "uv")] {
+            let mut bytes = Vec::new();
+            map.write_as("m.glb", set, &mut bytes).unwrap();
+            let glb = read(&bytes, "m.glb");
+            assert_eq!(glb.faces().len(), surface.faces().len());
+            // Faces of a material come together; each is found by its corners.
+            let key = |surface: &Surface, f: usize| {
+                surface.faces()[f].map(|v| surface.positions()[v as usize].map(f64::to_bits))
+            };
+            let place: std::collections::HashMap<_, _> =
+                (0..glb.faces().len()).map(|f| (key(&glb, f), f)).collect();
+            for f in 0..surface.faces().len() {
+                let other = place[&key(&surface, f)];
+                let corners = surface.faces()[f].map(|v| surface.positions()[v as usize]);
+                for (k, &p) in corners.iter().enumerate() {
+                    let near = |found: &[f64], expected: [f64; 2]| {
+                        let gap =
+                            (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
+                        assert!(gap < 1e-5, "{set:?}: {found:?}, not {expected:?}");
+                    };
+                    near(named(&glb, ours).of(3 * other + k), map.corner_uvs()[3 * f + k]);
+                    near(named(&glb, theirs).of(3 * other + k), box_uv(side(&corners), p));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_that_says_nothing_more_becomes_one_that_does_not_either() {
+        let (positions, polygons) = block();
+        let surface = Surface::from_polygons(&positions, &polygons).unwrap();
+        let mut text = Vec::new();
+        surface.quad_mesh(&QuadOptions::count(100)).unwrap().write_as("q", &mut text).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let is_plain = |line: &str| {
+            line.starts_with('#')
+                || line.split(' ').count() == [4, 5][usize::from(line.starts_with("f "))]
+        };
+        assert!(
+            text.lines().all(|line| is_plain(line) && !line.contains('/') || line.starts_with('#')),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn attributes_may_be_given() {
+        let (positions, polygons) = block();
+        let surface = Surface::from_polygons(&positions, &polygons).unwrap();
+        let heat = positions.iter().map(|p| p[0]).collect();
+        let (domain, kind) = (AttributeDomain::Vertex, AttributeKind::Number);
+        let heat = Attribute::new("heat", domain, kind, 1, heat);
+        let warm = surface.clone().with_attributes(vec![heat.clone()].into()).unwrap();
+        let mut bytes = Vec::new();
+        let quads = warm.quad_mesh(&QuadOptions::count(300)).unwrap();
+        quads.write_as("q.ply", &mut bytes).unwrap();
+        let again = read(&bytes, "q.ply");
+        for (v, p) in again.positions().iter().enumerate() {
+            assert!((named(&again, "heat").of(v)[0] - p[0]).abs() < 1e-9);
+        }
+        let short = heat.on(domain, 0..3);
+        let error = surface.with_attributes(vec![short].into()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Options);
+    }
+}

@@ -41,7 +41,7 @@ const FEW_DIGITS: f64 = 0.01;
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct CheckArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     /// A map of the mesh: an OBJ file with a texture coordinate at every corner

@@ -28,7 +28,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct FieldArgs {
-    /// The mesh, or the quad mesh: OBJ, OFF, PLY or STL
+    /// The mesh, or the quad mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     /// A seamless map of the mesh: an OBJ file with a texture coordinate at every corner; not for a quad

@@ -9,7 +9,7 @@ use crate::summary;
 use crate::text::{rounded, row};
 use seamstress::{
     CertifyOptions, Error, Features, GridRounding, IntegerGridMap, IntegerMapOptions, MapFile,
-    MapOptions, Page, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions,
+    MapOptions, Page, PartOptions, QuantizationStats, SurfaceOptions, TextureOptions, UvSet,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -33,16 +33,20 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct IntegerArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     /// A seamless map of the mesh: an OBJ file with a texture coordinate at every corner
     #[arg(value_name = "MAP.obj")]
     map: Option<PathBuf>,
 
-    /// Write the integer-grid map to this OBJ file, replacing an existing one
+    /// Write the integer-grid map to this OBJ or GLB file, replacing an existing one
     #[arg(short, long, value_name = "INT.obj")]
     output: PathBuf,
+
+    /// Which texture coordinates the map is in a GLB file, where the mesh has some of its own
+    #[arg(long, value_enum, value_name = "SET", default_value_t)]
+    uv_set: UvSet,
 
     #[command(flatten)]
     size: SizeArgs,
@@ -141,8 +145,13 @@ impl Command for IntegerArgs {
         Some(map.page())
     }
 
-    fn write(&self, map: &IntegerGridMap, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
-        map.write_to(&mut file)
+    fn write(
+        &self,
+        map: &IntegerGridMap,
+        target: &Target,
+        mut file: &mut dyn Write,
+    ) -> io::Result<()> {
+        map.write_as(&target.path, self.uv_set, &mut file)
     }
 
     fn report(&self, map: &IntegerGridMap) -> Value {

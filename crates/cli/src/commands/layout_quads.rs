@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{counted, row};
 use seamstress::lab::{QuadLayout, QuadLayoutMethod};
-use seamstress::{Error, PolygonMesh, TextureOptions};
+use seamstress::{Error, PolygonMesh, TextureOptions, UvSet};
 use serde_json::Value;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -75,8 +75,13 @@ impl Command for LayoutQuadsArgs {
         draw_map(self.pictures.as_ref(), || layout.pictures(&self.texture))
     }
 
-    fn write(&self, layout: &QuadLayout, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
-        layout.write_to(&mut file)
+    fn write(
+        &self,
+        layout: &QuadLayout,
+        target: &Target,
+        mut file: &mut dyn Write,
+    ) -> io::Result<()> {
+        layout.write_as(&target.path, UvSet::First, &mut file)
     }
 
     fn report(&self, layout: &QuadLayout) -> Value {

@@ -8,7 +8,7 @@ use crate::output::{Kind, Plan, Target};
 use crate::summary;
 use crate::text::{as_options, counted, row};
 use seamstress::lab::{LaidOut, MethodOptions};
-use seamstress::{Error, Features, Page, SurfaceOptions, TextureOptions, write_cones};
+use seamstress::{Error, Features, Page, SurfaceOptions, TextureOptions, UvSet, write_cones};
 use serde_json::Value;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -36,12 +36,16 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct MapArgs {
-    /// The mesh to map: OBJ, OFF, PLY or STL, also compressed with gzip; `-` is standard input
+    /// The mesh to map: OBJ, OFF, PLY, STL or glTF, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
-    /// Write the map to this OBJ file, replacing an existing one; `-` is standard output
+    /// Write the map to this OBJ or GLB file, replacing an existing one; `-` is standard output, as OBJ
     #[arg(short, long, value_name = "MAP.obj")]
     output: PathBuf,
+
+    /// Which texture coordinates the map is in a GLB file, where the mesh has some of its own
+    #[arg(long, value_enum, value_name = "SET", default_value_t)]
+    uv_set: UvSet,
 
     /// Write everything about the run to this file: a page to look at with a name in .html, else JSON; may be given
     /// several times
@@ -132,8 +136,10 @@ impl Command for MapArgs {
         match (product, target.kind) {
             (LaidOut::Certified(map), Kind::Cones) => write_cones(map.cones(), &mut file),
             (LaidOut::Uncertified(layout), Kind::Cones) => write_cones(layout.cones(), &mut file),
-            (LaidOut::Certified(map), _) => map.write_to(&mut file),
-            (LaidOut::Uncertified(layout), _) => layout.write_to(&mut file),
+            (LaidOut::Certified(map), _) => map.write_as(&target.path, self.uv_set, &mut file),
+            (LaidOut::Uncertified(layout), _) => {
+                layout.write_as(&target.path, self.uv_set, &mut file)
+            }
         }
     }
 

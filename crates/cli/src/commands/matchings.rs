@@ -27,7 +27,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct MatchingsArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     #[command(flatten)]

@@ -30,7 +30,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct MeasureArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     /// A map of the mesh: an OBJ file with a texture coordinate at every corner

@@ -10,7 +10,7 @@ use crate::text::{counted, rounded, row};
 use seamstress::lab::read_stretches;
 use seamstress::{
     ConicStats, Error, Features, MapFile, Objective, OptimizeOptions, OptimizeReport, SeamlessMap,
-    SurfaceOptions, TextureOptions,
+    SurfaceOptions, TextureOptions, UvSet,
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -34,7 +34,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct OptimizeArgs {
-    /// The mesh: OBJ, OFF, PLY or STL
+    /// The mesh: OBJ, OFF, PLY, STL or glTF
     mesh: PathBuf,
 
     /// A seamless map of the mesh; may be left out if the mesh is a disk
@@ -115,8 +115,13 @@ impl Command for OptimizeArgs {
         draw_map(self.pictures.as_ref(), || map.pictures(&self.texture))
     }
 
-    fn write(&self, map: &Self::Product, _: &Target, mut file: &mut dyn Write) -> io::Result<()> {
-        map.write_to(&mut file)
+    fn write(
+        &self,
+        map: &Self::Product,
+        target: &Target,
+        mut file: &mut dyn Write,
+    ) -> io::Result<()> {
+        map.write_as(&target.path, UvSet::First, &mut file)
     }
 
     fn report(&self, map: &Self::Product) -> Value {

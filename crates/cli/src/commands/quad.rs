@@ -31,7 +31,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct QuadArgs {
-    /// The mesh: OBJ, OFF, PLY or STL, also compressed with gzip; `-` is standard input
+    /// The mesh: OBJ, OFF, PLY, STL or glTF, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
     #[command(flatten)]

@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 /// The quad mesh, its report and its picture.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct QuadFiles {
-    /// Write the quad mesh to this OBJ, OFF, PLY or STL file, replacing an existing one; `-` is standard output,
+    /// Write the quad mesh to this OBJ, OFF, PLY, STL or GLB file, replacing an existing one; `-` is standard output,
     /// as OBJ
     ///
-    /// STL has two triangles for each quad. A name that ends in `.gz` is compressed.
+    /// What the mesh carries comes along as far as the format holds it: UVs with their seams, materials, groups, colours,
+    /// normals and other properties. STL and GLB have two triangles for each quad. A name that ends in `.gz` is compressed.
     #[arg(short, long, value_name = "QUADS")]
     output: PathBuf,
 

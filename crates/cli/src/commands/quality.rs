@@ -40,7 +40,7 @@ pub(crate) struct QualityArgs {
     /// The quad mesh: OBJ, OFF or PLY
     quads: PathBuf,
 
-    /// The surface it was made from, to measure the distances to: OBJ, OFF, PLY or STL
+    /// The surface it was made from, to measure the distances to: OBJ, OFF, PLY, STL or glTF
     #[arg(long, value_name = "MESH")]
     source: Option<PathBuf>,
 

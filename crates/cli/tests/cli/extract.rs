@@ -1,7 +1,8 @@
 //! From integer maps to quad meshes.
 
 use crate::harness::{Folder, lines_of};
-use seamstress_io::{MapObj, write_map_obj};
+use seamstress_io::attributes::{Attribute, AttributeDomain, AttributeKind};
+use seamstress_io::{Format, Polymesh};
 use seamstress_testkit as testkit;
 use seamstress_testkit::{IntegerMap, cube, disk_grid, slab_with_holes, squares, torus};
 use serde_json::Value;
@@ -10,8 +11,11 @@ use std::collections::BTreeSet;
 fn write_map(folder: &Folder, name: &str, map: &IntegerMap) {
     let mut bytes = Vec::new();
     let IntegerMap { soup, corner_uvs } = map;
-    let obj = MapObj { positions: &soup.positions, faces: &soup.faces, corner_uvs, comments: &[] };
-    write_map_obj(&mut bytes, &obj).unwrap();
+    let (domain, kind) = (AttributeDomain::Corner, AttributeKind::Uv);
+    let uvs = Attribute::new("map", domain, kind, 2, corner_uvs.as_flattened().to_vec());
+    let (positions, polygons, attributes) = (&soup.positions, &soup.faces, &vec![uvs].into());
+    let obj = Polymesh { positions, polygons, attributes, comments: &[] };
+    obj.write(&mut bytes, Format::Obj).unwrap();
     folder.write(name, bytes);
 }
 
@@ -45,10 +49,13 @@ fn quads_are_written_in_the_formats_that_are_read_and_in_no_other() {
     folder.expect(0, &["layout-quads", "q.ply", "-o", "back.obj"]);
     folder.expect(0, &["extract", "back.obj", "-o", "again.obj", "--quiet"]);
     assert_eq!(lines_of(&folder.read("again.obj"), "f").len(), 24);
-    let run = folder.expect(2, &["extract", "map.obj", "-o", "q.glb"]);
-    assert!(run.stderr.contains("in .obj, .off, .ply or .stl"), "{run:?}");
+    let run = folder.expect(2, &["extract", "map.obj", "-o", "q.fbx"]);
+    assert!(run.stderr.contains("in .obj, .off, .ply, .stl or .glb"), "{run:?}");
     for (arguments, refusal) in [
-        (["-o", "q.glb"].as_slice(), "quad meshes are written as OBJ, OFF, PLY or STL, not GLB"),
+        (
+            ["-o", "q.fbx"].as_slice(),
+            "quad meshes are written as OBJ, OFF, PLY, STL or GLB, not FBX",
+        ),
         (&["-o", "q.obj", "--picture", "q.jpg"], "pictures are written as PNG, not JPG"),
     ] {
         let run = folder.expect(2, &[&["extract", "map.obj"], arguments].concat());

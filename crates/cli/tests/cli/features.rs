@@ -98,8 +98,8 @@ fn borders_of_what_the_file_says_of_its_faces() {
         assert_eq!(ends(source), std::slice::from_ref(&second), "{source}");
     }
     folder.write_obj("in.obj", &testkit::cube());
-    refuse(&folder, "material", "need an OBJ file with `usemtl` statements");
-    refuse(&folder, "uv-seams", "need an OBJ file with a texture coordinate at every corner");
+    refuse(&folder, "material", "need a mesh with materials");
+    refuse(&folder, "uv-seams", "need a mesh with a texture coordinate at every corner");
 }
 
 #[test]

@@ -216,3 +216,34 @@ fn mixed_integer_rounding_reports_incumbents_and_bounds() {
     let features = [&map[..], &["--features", "angle:40"]].concat();
     assert!(folder.expect(2, &features).stderr.contains("mixed-integer"));
 }
+
+#[test]
+fn what_a_mesh_carries_stays_in_its_map_and_comes_over_to_its_quads() {
+    let folder = Folder::new();
+    let soup = testkit::cube();
+    let faces = soup.faces.iter().enumerate().map(|(f, face)| {
+        let material = if f < 2 { "usemtl red\n" } else { "usemtl blue\n" };
+        let [a, b, c] = face.map(|v| v + 1);
+        format!("{material}f {a}/1 {b}/2 {c}/3\n")
+    });
+    let faces: String = faces.collect();
+    let vertices: String =
+        soup.positions.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    let text = format!("mtllib paint.mtl\n{vertices}vt 0 0\nvt 1 0\nvt 0 1\n{faces}");
+    folder.write("in.obj", text);
+    folder.expect(0, &["map", "in.obj", "-o", "map.obj"]);
+    let map = folder.read("map.obj");
+    assert_eq!(lines_of(&map, "usemtl"), ["red", "blue"]);
+    assert_eq!(lines_of(&map, "mtllib"), ["paint.mtl"]);
+    folder.expect(0, &["check", "in.obj", "map.obj"]);
+    folder.expect(0, &["map", "in.obj", "-o", "map.glb", "--uv-set", "second"]);
+    folder.expect(0, &["quad", "map.glb", "--quads", "54", "-o", "q.obj"]);
+    let quads = folder.read("q.obj");
+    let n_red = quads
+        .split("usemtl ")
+        .filter(|part| part.starts_with("red"))
+        .map(|part| part.matches("\nf ").count());
+    let n_faces = lines_of(&quads, "f").len();
+    assert_eq!((6 * n_red.sum::<usize>(), n_faces % 6), (n_faces, 0));
+    assert!(!lines_of(&quads, "vt").is_empty());
+}

@@ -45,8 +45,8 @@ fn every_format_has_the_same_quads() {
         assert_eq!(count(name), quads, "{name}");
     }
     assert_eq!(count("q.stl"), 2 * quads);
-    let run = folder.expect(2, &["quad", "torus.obj", "--quads", "200", "-o", "q.glb.gz"]);
-    assert!(run.stderr.contains("OBJ, OFF, PLY or STL, not GLB"), "{run:?}");
+    let run = folder.expect(2, &["quad", "torus.obj", "--quads", "200", "-o", "q.fbx.gz"]);
+    assert!(run.stderr.contains("OBJ, OFF, PLY, STL or GLB, not FBX"), "{run:?}");
 }
 
 #[test]

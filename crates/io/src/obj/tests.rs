@@ -1,4 +1,5 @@
 use super::*;
+use seamstress_mesh::attributes::Attributes;
 
 fn read(text: &str) -> PolygonMesh {
     parse(text.as_bytes()).map_err(|fault| fault.named("a.obj").to_string()).unwrap()
@@ -16,7 +17,7 @@ fn all_forms_of_corners() {
     let mesh = read(&format!("{POINTS}vt 0 0\nvn 0 0 1\n{faces}"));
     assert_eq!(mesh.polygons.len(), 5);
     assert!(mesh.polygons.iter().all(|polygon| polygon == [0, 1, 2]));
-    assert_eq!(mesh.corner_uvs, None);
+    assert_eq!(mesh.attributes, Attributes::default());
     let incomplete = Note::TextureCoordinatesIncomplete { without: 10, corners: 15 };
     assert_eq!(mesh.notes, [incomplete, Note::NormalsIgnored { count: 1 }]);
 }
@@ -46,7 +47,9 @@ fn every_line_end_tab_comment_and_continuation() {
 
 #[test]
 fn names_may_end_in_a_backslash() {
-    assert_eq!(read(&format!("mtllib C:\\m\\\n{POINTS}f 1 2 3")).positions.len(), 3);
+    let mesh = read(&format!("mtllib C:\\m\\\n{POINTS}f 1 2 3"));
+    assert_eq!(mesh.positions.len(), 3);
+    assert_eq!(mesh.attributes.material_files, ["C:\\m\\"]);
 }
 
 #[test]
@@ -72,9 +75,9 @@ fn lines_are_split_and_points_noted() {
 fn texture_coordinates_are_kept_if_complete() {
     let uv = "vt 0.5\nvt 1 0 0\n";
     let mesh = read(&format!("{POINTS}{uv}f 1/1 2/2 3/1"));
-    let uvs = mesh.corner_uvs.unwrap();
-    assert_eq!(uvs.coordinates, [[0.5, 0.0], [1.0, 0.0]]);
-    assert_eq!(uvs.corners, [0, 1, 0]);
+    let uvs = mesh.corner_uvs().unwrap();
+    assert_eq!(uvs.values, [0.5, 0.0, 1.0, 0.0]);
+    assert_eq!(uvs.rows, [0, 1, 0]);
     let mesh = read(&format!("{POINTS}{uv}f 1 2 3"));
     assert_eq!(mesh.notes, [Note::TextureCoordinatesUnused { count: 2 }]);
     let mesh = read(&format!("{POINTS}vt nan 0\nf 1/1 2/1 3/1"));
@@ -91,7 +94,41 @@ fn texture_coordinates_are_kept_if_complete() {
 }
 
 #[test]
-fn colours_and_weights_are_noted() {
+fn what_a_mesh_carries_is_read() {
+    let vertices = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 .5\n";
+    let faces = "mtllib a b.mtl\nmtllib c.mtl\nf 1//1 2//2 3//-1\nusemtl red paint\no box\ns 1\n\
+        f 3//1 2//2 1//1\ng lid\ns off\nf 1//2 2//2 3//2\n";
+    let mesh = read(&format!("{vertices}vn 0 0 1\nvn 0 0 2\n{faces}"));
+    assert_eq!(mesh.notes, []);
+    assert_eq!(mesh.attributes.material_files, ["a b.mtl", "c.mtl"]);
+    let color = mesh.attributes.of_kind(AttributeKind::Color).next().unwrap();
+    assert_eq!((color.width, color.of(2)), (3, &[0.0, 0.0, 0.5][..]));
+    let normal = mesh.attributes.of_kind(AttributeKind::Normal).next().unwrap();
+    assert_eq!(normal.rows, [0, 1, 1, 0, 1, 0, 1, 1, 1]);
+    assert_eq!(normal.values, [0.0, 0.0, 1.0, 0.0, 0.0, 2.0]);
+    let names = |name: &str| -> Vec<&str> {
+        let labels = mesh.attributes.labels(name).unwrap();
+        labels.rows.iter().map(|&row| labels.names[row as usize].as_str()).collect()
+    };
+    assert_eq!(names("material"), ["", "red paint", "red paint"]);
+    assert_eq!(names("object"), ["", "box", "box"]);
+    assert_eq!(names("group"), ["", "", "lid"]);
+    assert_eq!(names("smoothing"), ["", "1", "0"]);
+}
+
+#[test]
+fn normals_that_are_not_there_are_noted() {
+    for (normals, face) in
+        [("vn 0 0 1", "f 1//1 2//1 3//2"), ("vn 0 0", "f 1//1 2//1 3//1"), ("vn 0 0 x", "f 1 2 3")]
+    {
+        let mesh = read(&format!("{POINTS}{normals}\n{face}"));
+        assert_eq!(mesh.notes, [Note::NormalsIgnored { count: 1 }]);
+        assert!(mesh.attributes.all.is_empty());
+    }
+}
+
+#[test]
+fn weights_are_noted() {
     let mesh = read("v 0 0 0 1\nv 1 0 0 .1 .2 .3\nv 0 1 0\nf 1 2 3");
     assert_eq!(mesh.notes, [Note::VertexColumnsIgnored { count: 2 }]);
 }

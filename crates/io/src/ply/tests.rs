@@ -1,3 +1,5 @@
+#![allow(clippy::panic, reason = "a test")]
+
 use super::*;
 
 const HEADER: &str = "comment c\nobj_info i\nelement vertex 3\nproperty double x\nproperty uchar red\n\
@@ -8,17 +10,19 @@ fn check(bytes: &[u8]) {
     let mesh = parse(bytes).map_err(|fault| fault.named("a.ply").to_string()).unwrap();
     assert_eq!(mesh.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.5, 0.0]]);
     assert_eq!(mesh.polygons.iter().collect::<Vec<_>>(), [&[0, 1, 2][..], &[2, 1, 0, 0]]);
-    let vertex = Note::PropertiesIgnored {
-        element: "vertex".into(),
-        names: vec!["red".into(), "seen".into()],
-    };
-    let face = Note::PropertiesIgnored { element: "face".into(), names: vec!["tag".into()] };
+    let vertex = Note::PropertiesIgnored { element: "vertex".into(), names: vec!["seen".into()] };
     let edge = Note::ElementsIgnored { kind: "`edge` element".into(), count: 1 };
-    assert_eq!(mesh.notes, [vertex, face, edge]);
+    assert_eq!(mesh.notes, [vertex, edge]);
+    let [red, tag] = &mesh.attributes.all[..] else { panic!("{:?}", mesh.attributes) };
+    assert_eq!((red.name.as_str(), red.domain), ("red", AttributeDomain::Vertex));
+    assert_eq!((tag.name.as_str(), tag.domain), ("tag", AttributeDomain::Face));
+    assert!(red.kind == AttributeKind::Label && tag.kind == AttributeKind::Label);
+    assert_eq!([red.of(0), red.of(1), red.of(2)], [[255.0], [0.0], [7.0]]);
+    assert_eq!([tag.of(0), tag.of(1)], [[-1.0], [5.0]]);
 }
 
 fn ascii() -> String {
-    let data = "0 255 0 0 0\n1 0 2 7 8 0 0\n\n0 0 1 9 0.5 0\n-1 3 0 1 2\n5 4 2 1 0 0\n77\n";
+    let data = "0 255 0 0 0\n1 0 2 7 8 0 0\n\n0 7 1 9 0.5 0\n-1 3 0 1 2\n5 4 2 1 0 0\n77\n";
     format!("ply\nformat ascii 1.0\n{HEADER}{data}")
 }
 
@@ -32,9 +36,10 @@ fn binary(big: bool) -> Vec<u8> {
             bytes[start..].reverse();
         }
     };
-    for (x, seen, y) in [(0.0f64, &[][..], 0.0f32), (1.0, &[7u16, 8], 0.0), (0.0, &[9], 0.5)] {
+    let rows = [(0.0f64, 255, &[][..], 0.0f32), (1.0, 0, &[7u16, 8], 0.0), (0.0, 7, &[9], 0.5)];
+    for (x, red, seen, y) in rows {
         put(&x.to_le_bytes());
-        put(&[255]);
+        put(&[red]);
         put(&(seen.len() as i16).to_le_bytes());
         for value in seen {
             put(&value.to_le_bytes());
@@ -42,8 +47,8 @@ fn binary(big: bool) -> Vec<u8> {
         put(&y.to_le_bytes());
         put(&0f32.to_le_bytes());
     }
-    for face in [&[0i32, 1, 2][..], &[2, 1, 0, 0]] {
-        put(&[5]);
+    for (tag, face) in [(-1i8, &[0i32, 1, 2][..]), (5, &[2, 1, 0, 0])] {
+        put(&tag.to_le_bytes());
         put(&[face.len() as u8]);
         for index in face {
             put(&index.to_le_bytes());

@@ -304,7 +304,7 @@ def _of_triangles(vertices: Floats, faces: Ints) -> Surface:
 
 @documented("map", *_SURFACE)
 def read(path: str | os.PathLike[str], **options: Unpack[SurfaceOptions]) -> Surface:
-    """Reads a surface: OBJ, OFF, PLY or STL, also compressed with gzip.
+    """Reads a surface: OBJ, OFF, PLY, STL or glTF, also compressed with gzip.
 
     Raises ``InputError`` if it cannot be read, or with every fault if it is no surface.
     """

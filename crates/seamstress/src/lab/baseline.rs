@@ -4,7 +4,7 @@ use super::options::MethodOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
 use crate::finding::{Finding, listing};
-use crate::map::SeamlessMap;
+use crate::map::{SeamlessMap, UvSet};
 use crate::report::{ConeReport, Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::counted;
@@ -12,6 +12,7 @@ use seamstress_parametrize::map::Cone;
 use seamstress_parametrize::{ComponentStats, FieldMapOptions, make_field_map};
 use serde::Serialize;
 use std::io;
+use std::path::Path;
 
 /// A certified map, or a layout that is none and says so.
 #[derive(Debug, Clone)]
@@ -78,14 +79,20 @@ impl FieldLayout {
         named(&self.report.violations)
     }
 
-    /// Writes it as OBJ.
+    /// Writes it in the format that a file of this name has: OBJ or GLB. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write_to(&self, writer: &mut impl io::Write) -> io::Result<()> {
+    pub fn write_as(
+        &self,
+        name: impl AsRef<Path>,
+        set: UvSet,
+        writer: &mut impl io::Write,
+    ) -> io::Result<()> {
         let title = "Uncertified layout of a cross field (triangles are flipped)";
         let lines = [self.report.distortion.line(self.cones.len())];
-        crate::map::write_map(writer, &self.surface, title, &self.corner_uvs, &lines)
+        let uvs = (&self.corner_uvs[..], set);
+        crate::map::write_map(writer, name.as_ref(), &self.surface, title, uvs, &lines)
     }
 }
 

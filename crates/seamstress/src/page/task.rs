@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind};
 use crate::feature_sources::{FeatureSource, Features};
 use crate::inspection::{Inspection, SurfaceOptions};
 use crate::integer::IntegerGridMap;
-use crate::map::SeamlessMap;
+use crate::map::{SeamlessMap, UvSet};
 use crate::options::{IntegerMapOptions, MapOptions, QuadOptions};
 use crate::quads::QuadMesh;
 use serde::Deserialize;
@@ -118,7 +118,7 @@ impl Done {
         &self.page
     }
 
-    /// The result as a file: a page, maps as OBJ, quads in the format of the name.
+    /// The result as a file: a page, maps and quads in the format of the name.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`] if there is no such file of it.
@@ -127,9 +127,10 @@ impl Done {
             return Ok(self.page.html().into_bytes());
         }
         let mut file = Vec::new();
+        let is_map = name.ends_with(".obj") || name.ends_with(".glb");
         let written = match &self.made {
-            Made::Map(map) if name.ends_with(".obj") => map.write_to(&mut file),
-            Made::Integer(map) if name.ends_with(".obj") => map.write_to(&mut file),
+            Made::Map(map) if is_map => map.write_as(name, UvSet::First, &mut file),
+            Made::Integer(map) if is_map => map.write_as(name, UvSet::First, &mut file),
             Made::Quads(quads) => quads.write_as(name, &mut file),
             _ => {
                 let text = format!("{name}: the result has no file of this kind");

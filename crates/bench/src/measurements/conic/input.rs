@@ -19,14 +19,12 @@ impl Input {
     /// Reads and certifies a map, and opens its exact layout.
     pub(super) fn load(path: &Path) -> Result<Self, Box<dyn Error>> {
         let read = read_mesh(path)?;
-        let uvs = read.corner_uvs.as_ref().ok_or("the file has no texture coordinates")?;
-        let uvs: Option<Vec<[f64; 2]>> =
-            uvs.corners.iter().map(|&k| uvs.coordinates.get(k as usize).copied()).collect();
+        let uvs = read.corner_uvs().ok_or("the file has no texture coordinates")?;
+        let uvs = (0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect();
         let faces: Result<Vec<[u32; 3]>, _> =
             read.polygons.iter().map(<[u32; 3]>::try_from).collect();
         let mesh = TriMesh::from_faces(read.positions.len(), &faces?)?;
         let metric = Metric::from_positions(&mesh, &read.positions);
-        let uvs = uvs.ok_or("a corner has no texture coordinates")?;
         let map = SeamlessMap::certify(&mesh, uvs, &Tolerance::default())?;
         let (layout, y) = ExactLayout::from_map(&mesh, &metric, &map)?;
         Ok(Self { z: layout.expand(&y), layout, y })
