@@ -6,7 +6,7 @@ use crate::features::{FeatureCurves, ordered};
 use crate::integer::SeamlessStart;
 use crate::options::IntegerMapOptions;
 use crate::surface::Surface;
-use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph};
+use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph, strips_and_slivers};
 use seamstress_parametrize::{ReleaseReason, ReleasedFeature};
 use seamstress_quads::{GoesOn, ManifoldError};
 use seamstress_quantize::{QuantizationFailure, QuantizeError, QuantizeOptions};
@@ -18,8 +18,9 @@ const MOST_MAPS: usize = 6;
 const SHORT: f64 = 1.0;
 
 impl Surface {
-    /// Makes a seamless map and rounds it. Where features are too close together for the grid asked for, the shortest curves
-    /// there are given up, and the map is made again; where there are none to give up, the grid gets finer.
+    /// Makes a seamless map and rounds it. Of strips much narrower than a cell one side is given up first. Where features
+    /// are too close together for the grid asked for, the shortest curves there are given up, and the map is made again;
+    /// where there are none to give up, the grid gets finer.
     ///
     /// # Errors
     /// Those of [`Surface::make_seamless`], and of the rounding with the fewest features.
@@ -37,13 +38,28 @@ impl Surface {
     ) -> Result<(SeamlessStart, T), Error> {
         let (mesh, settings) = (self.mesh(), options.to_quantize());
         let cell = settings.size.cell(self.metric().side());
-        let mut curves = asked.clone();
+        let is_strict = options.map.features_strict;
         let mut given_up = Vec::new();
+        let mut give_up = |edges: &EdgeSet| {
+            let pairs = edges.vertex_pairs(mesh).into_iter().map(ordered);
+            given_up.extend(pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded)));
+        };
+        let details = |edges: &EdgeSet| match is_strict {
+            true => EdgeSet::new(mesh, []),
+            false => strips_and_slivers(mesh, self.positions(), self.metric(), edges, cell),
+        };
+        let first = details(&asked.edges);
+        give_up(&first);
+        let mut curves = asked.without(self, &first);
         let mut n_maps = 1;
         let (start, made) = loop {
             let start = self.make_seamless(curves.clone(), options, watcher)?;
+            // The map may have dropped an edge beside a sliver.
+            let more = details(&start.kept(mesh));
+            give_up(&more);
+            let start = start.without(mesh, &more);
             let kept = start.kept(mesh);
-            let may_give_up = n_maps < MOST_MAPS && !options.map.features_strict;
+            let may_give_up = n_maps < MOST_MAPS && !is_strict;
             let crowded = |failure: &QuantizationFailure| match may_give_up {
                 true => self.crowded(failure, &kept, cell),
                 false => EdgeSet::new(mesh, []),
@@ -62,9 +78,8 @@ impl Surface {
             if crowded.is_empty() {
                 return Err(self.no_manifold(cause, options));
             }
-            let pairs = crowded.vertex_pairs(mesh).into_iter().map(ordered);
-            given_up.extend(pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded)));
-            curves = curves.without(self, &crowded);
+            give_up(&crowded);
+            curves = curves.without(self, &crowded.union(mesh, &more));
             n_maps += 1;
         };
         let features = start.features.map(|features| features.among(asked, given_up));

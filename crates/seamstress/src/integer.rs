@@ -158,6 +158,15 @@ impl SeamlessStart {
         let kept = self.features.as_ref().map_or(&[][..], |features| &features.kept);
         edges_of(mesh, kept)
     }
+
+    /// The same, following fewer of them.
+    pub(crate) fn without(mut self, mesh: &TriMesh, edges: &EdgeSet) -> Self {
+        if let Some(features) = &mut self.features {
+            let left = edges_of(mesh, &features.kept).without(mesh, edges.edges().iter().copied());
+            features.kept = left.vertex_pairs(mesh);
+        }
+        self
+    }
 }
 
 /// Decides for maps of any kind.

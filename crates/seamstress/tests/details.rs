@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use seamstress::{Features, QuadOptions, Surface};
-use seamstress_testkit::{parts, voxel_surface};
+use seamstress_testkit::{extruded, parts, voxel_surface};
 
 /// A ball of unit cubes.
 fn voxel_ball(radius: i32) -> Surface {
@@ -43,4 +43,22 @@ fn features_that_are_too_close_together_are_given_up_and_named() {
     assert!(dropped.iter().any(|edge| edge["reason"] == "crowded"), "{dropped:?}");
     let kept = report["features"]["kept"].as_u64().unwrap();
     assert_eq!(kept + dropped.len() as u64, report["features"]["edges"].as_u64().unwrap());
+}
+
+#[test]
+fn of_a_tiny_chamfer_one_side_is_enough() {
+    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.99], [0.99, 1.0], [0.0, 1.0]];
+    let solid = extruded(&outline, 1.0);
+    let surface = Surface::from_triangles(&solid.positions, &solid.faces).unwrap();
+    let options = QuadOptions::count(150).features(Features::angle(30.0));
+    let made = surface.quad_mesh(&options).unwrap();
+    let report = serde_json::to_value(made.report()).unwrap();
+    let dropped = report["features"]["dropped"].as_array().unwrap();
+    assert_eq!(dropped.len(), 1, "{dropped:?}");
+    assert_eq!(dropped[0]["reason"], "crowded");
+    // Creases of its own accord are none of those that would be dropped.
+    let made = surface.quad_mesh(&QuadOptions::count(150)).unwrap();
+    let report = serde_json::to_value(made.report()).unwrap();
+    assert_eq!(report["features"]["edges"], 14);
+    assert_eq!(report["features"]["kept"], 14);
 }

@@ -7,7 +7,7 @@
 //! flat faces has hardly anything around its edges but other edges: there every sharp one is a crease.
 
 use super::dihedral::dihedral_angle;
-use super::{Curve, EdgeSet, FeatureGraph, NodeKind};
+use super::{Curve, EdgeSet, FeatureGraph, NodeKind, strips};
 use crate::flat::FlatParts;
 use crate::ids::{Halfedge, HalfedgeData, Vertex, VertexData};
 use crate::mesh::TriMesh;
@@ -100,7 +100,7 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let found = shape.without_specks(&found, cell);
     let found = shape.without_details(found, cell);
     let found = shape.without_short_ends(found, cell);
-    shape.of_polyhedra(&found)
+    shape.without_strips(shape.of_polyhedra(&found), cell)
 }
 
 /// A surface and how it bends at its edges.
@@ -316,6 +316,13 @@ impl<'a> Shape<'a> {
             }
             creases = creases.without(self.mesh, removed);
         }
+    }
+
+    /// Removes one side of each strip that is much narrower than a cell.
+    fn without_strips(&self, creases: EdgeSet, cell: f64) -> EdgeSet {
+        let cell = cell * self.metric.unit;
+        let strips = strips(self.mesh, self.positions, self.metric, &creases, cell);
+        creases.without(self.mesh, strips.edges().iter().copied())
     }
 
     /// Removes creases that hang together and are specks, or finer than the grid.

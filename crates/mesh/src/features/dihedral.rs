@@ -27,7 +27,7 @@ pub fn sharp_edges(mesh: &TriMesh, positions: &[[f64; 3]], min_angle: f64) -> Ed
 }
 
 /// The unit normal of a face, at any scale.
-fn normal(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> Option<[f64; 3]> {
+pub(super) fn normal(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> Option<[f64; 3]> {
     let corners = mesh.face_vertices(f).map(|v| positions[v.at()]);
     // Halved first, so that no difference overflows.
     let side = |k: usize| [0, 1, 2].map(|i| 0.5 * corners[(k + 1) % 3][i] - 0.5 * corners[k][i]);

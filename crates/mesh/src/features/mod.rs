@@ -4,6 +4,7 @@
 //!   ([`sharp_edges`]) or the boundary.
 //! * [`sectors`]: the fans of corners into which a set of edges parts the surface around a vertex.
 //! * [`creases`]: those that the shape of a surface shows.
+//! * [`strips`] and [`strips_and_slivers`]: those side by side that a grid has no room for.
 //! * [`FeatureGraph`]: corners, curves, loops and open ends of a set.
 
 mod creases;
@@ -12,6 +13,7 @@ mod edge_set;
 mod finder;
 mod graph;
 mod sector;
+mod strips;
 
 pub use creases::creases;
 pub use dihedral::{dihedral_angle, sharp_edges};
@@ -19,3 +21,4 @@ pub use edge_set::EdgeSet;
 pub use finder::{EdgeFinder, EdgeNameError};
 pub use graph::{Curve, FeatureGraph, Node, NodeKind};
 pub use sector::{Sector, sectors};
+pub use strips::{strips, strips_and_slivers};

@@ -65,7 +65,7 @@ fn lay_out_cleaned(
 }
 
 /// The layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
-/// the others stay.
+/// the others stay as long as features are near the defects.
 ///
 /// # Errors
 /// [`MethodError`].
@@ -87,12 +87,15 @@ fn lay_out_rounded<'m>(
         let Some(fewer) = domain.without_features_at(&defects) else {
             return Err(MethodError::Defective(defects));
         };
-        let kept =
-            rounding.start.with_fewer_aligned(&domain.sectors, &fewer.sectors, &fewer.metric);
-        let kept = Rounding { start: kept, stats: rounding.stats };
-        (domain, rounding) = match repaired(&fewer, kept) {
-            Ok(kept) => (fewer, kept),
-            Err(_) => {
+        // With no feature near the defects they lie in the matchings alone.
+        let kept = (fewer.features() != domain.features()).then(|| {
+            let (before, after) = (&domain.sectors, &fewer.sectors);
+            let start = rounding.start.with_fewer_aligned(before, after, &fewer.metric);
+            repaired(&fewer, Rounding { start, stats: rounding.stats })
+        });
+        (domain, rounding) = match kept {
+            Some(Ok(kept)) => (fewer, kept),
+            Some(Err(_)) | None => {
                 let unfolding = fewer.unfold();
                 round(fewer, unfolding, start, options, watch)?
             }
