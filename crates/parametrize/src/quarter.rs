@@ -24,6 +24,13 @@ pub fn rotation(quarters: f64) -> Complex64 {
     Complex64::from_polar(1.0, quarters * std::f64::consts::FRAC_PI_2)
 }
 
+/// `i^k wanted` with the k that brings it nearest to the direction of `to`.
+#[inline]
+pub fn nearest_quarter(wanted: Complex64, to: Complex64) -> Complex64 {
+    let off = (to * wanted.conj()).arg() / std::f64::consts::FRAC_PI_2;
+    turn(wanted, off.round() as i32)
+}
+
 /// Whether a figure is at most a limit; a figure that is not a number is not.
 #[inline]
 pub fn within(figure: f64, limit: f64) -> bool {

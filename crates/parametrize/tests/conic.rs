@@ -154,6 +154,7 @@ fn a_single_triangle_has_no_distortion() {
         wedges: [0, 1, 2],
         gradients: [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]],
         weight: 1.0,
+        wanted: Complex64::ZERO,
     };
     for measure in MEASURES {
         let mut problem = problem(3, vec![triangle]);

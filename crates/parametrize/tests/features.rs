@@ -250,7 +250,8 @@ fn indices_of_sectors_are_integers_with_the_right_sum() {
         let sectors = Sectors::new(&mesh, &metric, &features);
         let unfolding = Unfolding::through_curved_sectors(&sectors, &metric);
         let options = RoundingOptions::default();
-        let rounding = unwatched(|watch| round(&sectors, &metric, unfolding, &options, watch));
+        let rounding =
+            unwatched(|watch| round(&sectors, &metric, unfolding, None, &options, watch));
         let matched = repair(&sectors, &metric, rounding.unwrap().start.matched).matched;
         let index = matched.unfolding.indices(&sectors, &metric, &matched.rotations());
         let off = index.iter().map(|k| (k - k.round()).abs()).fold(0.0, f64::max);
@@ -341,7 +342,7 @@ fn matchings_outlive_the_release_of_features() {
         let to = Sectors::new(&mesh, &metric, &few);
         let unfolding = Unfolding::through_curved_sectors(&from, &metric);
         let options = RoundingOptions::default();
-        let rounding = unwatched(|watch| round(&from, &metric, unfolding, &options, watch));
+        let rounding = unwatched(|watch| round(&from, &metric, unfolding, None, &options, watch));
         let matched = rounding.unwrap().start.matched;
         let (fewer, _) = matched.with_fewer_aligned(&from, &to, &metric);
         // The angle around each vertex stays what it is.

@@ -54,7 +54,7 @@ fn rounded_with_frames(mesh: &TriMesh, metric: &Metric) -> FramedCut {
     let sectors = Sectors::unaligned(mesh);
     let unfolding = Unfolding::new(&sectors, metric, DualTree::lightest(mesh, noise(mesh)));
     let options = RoundingOptions::default();
-    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, &options, watch));
+    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, None, &options, watch));
     let FramedCut { matched, frames } = rounding.unwrap().start;
     let Repair { matched, hopeless, .. } = repair(&sectors, metric, matched);
     assert_eq!(hopeless, []);
@@ -300,14 +300,16 @@ fn new_holonomy_keeps_every_index() {
         matched.matching.iter_mut().for_each(|r| *r += rng.below(3) as i32 - 1);
         let before = matched.sector_indices(&Sectors::unaligned(&mesh), &metric);
         let sum: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
-        let FramedCut { matched, frames } =
-            fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched).unwrap();
+        let frames = vec![Complex64::ONE; mesh.n_faces()];
+        let start = FramedCut { matched, frames };
+        let fixed = fix_holonomy(&Sectors::unaligned(&mesh), &metric, start, None).unwrap();
+        let FramedCut { matched, frames } = fixed.clone();
         assert_eq!(frames.len(), mesh.n_faces());
         assert_eq!(matched.sector_indices(&Sectors::unaligned(&mesh), &metric), before);
         let after: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         assert!((sum - after).abs() < 1e-8);
         // What is best is not changed again.
-        let again = fix_holonomy(&Sectors::unaligned(&mesh), &metric, matched.clone()).unwrap();
+        let again = fix_holonomy(&Sectors::unaligned(&mesh), &metric, fixed, None).unwrap();
         assert_eq!(again.matched.matching, matched.matching);
     }
 }
@@ -357,21 +359,23 @@ fn clean_up_never_makes_cones() {
     with_sectors(|sectors, metric| {
         let unfolding = Unfolding::through_curved_sectors(sectors, metric);
         let options = RoundingOptions::default();
-        let rounding = unwatched(|watch| round(sectors, metric, unfolding, &options, watch));
-        let Repair { matched: start, hopeless, .. } =
-            repair(sectors, metric, rounding.unwrap().start.matched);
+        let rounding = unwatched(|watch| round(sectors, metric, unfolding, None, &options, watch));
+        let mut start = rounding.unwrap().start;
+        let Repair { matched, hopeless, .. } = repair(sectors, metric, start.matched);
+        start.matched = matched;
         assert_eq!(hopeless, []);
         let cost = |matched: &MatchedCut| {
             let index = matched.sector_indices(sectors, metric);
             let cones = index.enumerate().filter(|&(s, &k)| k != sectors.preferred(s)).count();
             (cones as i32, Surrogate::new(sectors, metric, &index).unwrap().energy())
         };
-        let (before, energy_before) = cost(&start);
+        let (before, energy_before) = cost(&start.matched);
         for price in [0.0006, 0.01, 1.0] {
             let count = ConeCount::Cones;
             let options = CleanUpOptions { price, count, largest_deviation: 1.5 };
-            let (matched, stats) =
-                unwatched(|watch| clean_up(sectors, metric, &start, &options, watch)).unwrap();
+            let (FramedCut { matched, .. }, stats) =
+                unwatched(|watch| clean_up(sectors, metric, &start, None, &options, watch))
+                    .unwrap();
             let (after, energy) = cost(&matched);
             assert_eq!(stats.saved, before - after);
             assert!(stats.saved >= 0);

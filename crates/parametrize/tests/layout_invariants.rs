@@ -51,7 +51,7 @@ fn rounded(mesh: &TriMesh, metric: &Metric) -> FramedCut {
     let tree = DualTree::lightest(mesh, |h| metric.length[h]);
     let unfolding = Unfolding::new(&sectors, metric, tree);
     let options = RoundingOptions::default();
-    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, &options, watch));
+    let rounding = unwatched(|watch| round(&sectors, metric, unfolding, None, &options, watch));
     let FramedCut { matched, frames } = rounding.unwrap().start;
     FramedCut { matched: repair(&sectors, metric, matched).matched, frames }
 }

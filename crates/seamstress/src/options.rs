@@ -34,6 +34,11 @@ pub struct MapOptions {
         default_value_t = Self::default().corner_angle))]
     pub corner_angle: f64,
 
+    /// How much to follow the directions of principal curvature: 0 not at all, 1 as far as they are certain, so that
+    /// lines run around and along limbs and tubes [default: 0; for quads of a mesh 1]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::share))]
+    pub align: Option<f64>,
+
     /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
         default_value_t = Self::default().cone_bias))]
@@ -79,6 +84,7 @@ impl Default for MapOptions {
             features: Features::default(),
             features_strict: false,
             corner_angle: method::MapOptions::default().corner_angle,
+            align: None,
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
@@ -126,6 +132,9 @@ impl MapOptions {
                 format!("corner_angle: {} is no angle above 0 and up to 180", self.corner_angle);
             return Err(Error::options(text));
         }
+        if let Some(align) = self.align.filter(|align| !(0.0..=1.0).contains(align)) {
+            return Err(Error::options(format!("align: {align} is not between 0 and 1")));
+        }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;
@@ -137,11 +146,17 @@ impl MapOptions {
         self.clone().features(self.features.or(default))
     }
 
+    /// The same with the strength of alignment chosen where that was left open.
+    pub(crate) fn or_align(self, default: f64) -> Self {
+        Self { align: self.align.or(Some(default)), ..self }
+    }
+
     pub(crate) fn to_method(&self) -> method::MapOptions {
         let mut options = method::MapOptions::default();
         options.rounding.cone_bias = self.cone_bias;
         options.rounding.corner_weight = self.corner_weight;
         options.cone_price = self.cone_price;
+        options.alignment = self.align.unwrap_or(0.0);
         options.strict_features = self.features_strict;
         options.corner_angle = self.corner_angle;
         options.polish = (!self.no_tau_polish).then_some(PolishOptions {
@@ -381,6 +396,13 @@ pub(crate) mod parse {
         }
     }
 
+    pub(crate) fn share(text: &str) -> Result<f64, String> {
+        match text.parse::<f64>() {
+            Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+            _ => Err("expected a number from 0 to 1".into()),
+        }
+    }
+
     pub(crate) fn angle(text: &str) -> Result<f64, String> {
         match text.parse::<f64>() {
             Ok(x) if x > 0.0 && x <= 180.0 => Ok(x),
@@ -426,6 +448,7 @@ mod tests {
         let cases: [(MapOptions, &str); 5] = [
             (MapOptions { corner_angle: 0.0, ..Default::default() }, "corner_angle"),
             (MapOptions::default().cone_bias(-1.0), "cone_bias"),
+            (MapOptions { align: Some(1.5), ..Default::default() }, "align"),
             (MapOptions::default().cone_price(f64::NAN), "cone_price"),
             (MapOptions::default().features(Features::angle(0.0)), "features"),
             (

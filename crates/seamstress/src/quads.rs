@@ -348,6 +348,9 @@ impl Selection {
     }
 }
 
+/// How much quads follow principal directions, unless it is said.
+const ALIGN: f64 = 1.0;
+
 impl Surface {
     /// Makes a mesh of quads: a seamless map, rounded to an integer-grid map whose cells are extracted.
     ///
@@ -359,7 +362,8 @@ impl Surface {
     pub fn quad_mesh(&self, options: &QuadOptions) -> Result<QuadMesh, Error> {
         options.validate()?;
         options.size.check_count(self.metric().side())?;
-        let options = &options.clone().map(options.map.or_features(Features::auto()));
+        let options =
+            &options.clone().map(options.map.or_features(Features::auto()).or_align(ALIGN));
         let made = self.context().run(|watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
             let make = |selection: &Selection, size| selection.quads(size, options, watcher);

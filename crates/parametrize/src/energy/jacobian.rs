@@ -21,6 +21,13 @@ impl Jacobian {
         }
     }
 
+    /// The entries of the matrix, row by row.
+    #[inline]
+    pub fn entries(&self) -> [f64; 4] {
+        let (s, a) = (self.similar, self.anti);
+        [s.re + a.re, a.im - s.im, s.im + a.im, s.re - a.re]
+    }
+
     /// Signed singular values, the larger first; the second is negative for a flipped triangle.
     #[inline]
     pub fn singular_values(&self) -> (f64, f64) {

@@ -1,5 +1,6 @@
 //! What a layout is measured by: triangles, their Jacobians, and energies of the two signed singular values.
 
+mod alignment;
 mod bounded_dilatation;
 mod dirichlet;
 mod distance;
@@ -8,6 +9,7 @@ mod jacobian;
 mod triangle;
 mod untangling;
 
+pub use alignment::Alignment;
 pub use bounded_dilatation::BoundedDilatation;
 pub use dirichlet::SymmetricDirichlet;
 pub use distance::{Arap, Asap, Guarded};

@@ -19,6 +19,8 @@ pub struct Triangle {
     pub gradients: [[f64; 2]; 3],
     /// Share of the total area.
     pub weight: f64,
+    /// A rotation wanted, up to quarter turns, times what it counts; zero if none is.
+    pub wanted: Complex64,
 }
 
 impl Triangle {
@@ -81,6 +83,7 @@ pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
                 wedges: f.halfedges().map(|h| cut.wedge[h]),
                 gradients: [[-g1[0] - g2[0], -g1[1] - g2[1]], g1, g2],
                 weight: metric.area[f] / total,
+                wanted: Complex64::ZERO,
             }
         })
         .collect()

@@ -101,7 +101,7 @@ pub fn matchings_from_rows(
 
 /// Unit axes of a face: along its first side, and a quarter turn counter-clockwise from it. Triangles
 /// without area get some pair of axes, always the same.
-fn axes(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 2] {
+pub(super) fn axes(mesh: &TriMesh, positions: &[[f64; 3]], f: Face) -> [[f64; 3]; 2] {
     let [a, b, c] = mesh.face_vertices(f).map(|v| positions[v.at()]);
     let largest = [a, b, c].as_flattened().iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let scale = if largest > 0.0 { 1.0 / largest.clamp(1e-300, 1e300) } else { 1.0 };
@@ -126,10 +126,10 @@ fn unit(d: [f64; 3]) -> Option<[f64; 3]> {
     (length > 0.0).then(|| d.map(|x| x / length))
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -46,9 +46,22 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
         couple: impl Fn(usize) -> (f64, T),
         conjugate: impl Fn(T) -> T,
     ) -> Result<(), NotPositiveDefinite> {
+        self.factorize_near(couple, |_| 0.0, conjugate)
+    }
+
+    /// The same with the sum over faces of `pull |x|^2`.
+    ///
+    /// # Errors
+    /// When the sum is not positive definite to working precision.
+    pub(super) fn factorize_near(
+        &mut self,
+        couple: impl Fn(usize) -> (f64, T),
+        pull: impl Fn(usize) -> f64,
+        conjugate: impl Fn(T) -> T,
+    ) -> Result<(), NotPositiveDefinite> {
         self.values.fill(T::default());
-        for &k in self.pattern.diagonal() {
-            self.values[k as usize] += T::from(SHIFT);
+        for (f, &k) in self.pattern.diagonal().iter().enumerate() {
+            self.values[k as usize] += T::from(SHIFT + pull(f));
         }
         for (e, &[left, right]) in self.faces.iter().enumerate() {
             let (weight, off) = couple(e);

@@ -6,9 +6,11 @@
 
 mod convert;
 mod cross_field;
+mod curvature;
 mod extract;
 mod face_laplacian;
 mod frames_of_matchings;
+mod guide;
 mod homology;
 mod lift;
 mod matched;
@@ -21,6 +23,7 @@ pub use cross_field::{CrossField, FieldError};
 pub use extract::{ExtractError, extract, map_frames, map_indices};
 pub(crate) use frames_of_matchings::frames_of;
 pub use frames_of_matchings::{smooth_frames, spectral_frames};
+pub use guide::Guide;
 pub use homology::{DualLoop, Homology, NodeIndices};
 pub use lift::{LiftError, lift};
 pub use matched::{ResidualFieldError, matched_cut, residual_field};

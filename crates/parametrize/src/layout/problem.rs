@@ -5,7 +5,10 @@ use super::element::ElementMap;
 use super::penalty::SeamPenalty;
 use super::space::LinearSpace;
 use crate::cut::Cut;
-use crate::energy::{CHUNK, Energy, ProjectedHessian, Triangle, at_corner, sum_over, triangles};
+use crate::energy::{
+    Alignment, CHUNK, Energy, ProjectedHessian, Triangle, at_corner, sum_over, triangles,
+};
+use crate::field::Guide;
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
@@ -146,6 +149,16 @@ impl LayoutProblem {
         self.triangles = triangles(mesh, metric, cut);
     }
 
+    /// Pulls the triangles towards the directions of a guide from now on; `strength` is the mean energy that turning all of
+    /// them by 45 degrees costs where these count fully.
+    pub fn follow(&mut self, guide: &Guide, strength: f64) {
+        for ((t, &rotation), weight) in
+            self.triangles.iter_mut().zip(guide.rotation.iter()).zip(guide.weight.iter())
+        {
+            t.wanted = rotation * (strength * weight);
+        }
+    }
+
     /// Measures the Jacobians from stretched faces from now on.
     pub fn stretch(&mut self, anisotropy: &Anisotropy) {
         anisotropy.apply(&mut self.triangles);
@@ -159,9 +172,11 @@ impl LayoutProblem {
     /// Total energy, penalty included; infinite when a triangle is flipped or collapsed.
     pub fn value(&self, energy: &impl Energy, z: &[Complex64]) -> f64 {
         let sum = sum_over(&self.triangles, |t| {
-            let (s1, s2) = t.jacobian(z).singular_values();
+            let jacobian = t.jacobian(z);
+            let (s1, s2) = jacobian.singular_values();
             if energy.allows_flips() || (s2 > 0.0 && t.doubled_area(z) > 0.0) {
-                t.weight * energy.value(s1, s2)
+                let pull = Alignment::new(t, &jacobian).map_or(0.0, |pull| pull.value(&jacobian));
+                t.weight * (energy.value(s1, s2) + pull)
             } else {
                 f64::INFINITY
             }
@@ -172,13 +187,17 @@ impl LayoutProblem {
     /// Assembles gradient and projected Hessian; returns the gradient in the unknowns.
     pub fn linearize(&mut self, energy: &impl Energy, z: &[Complex64]) -> Vec<f64> {
         self.fill_triangles(|t, local, block| {
-            let hessian = ProjectedHessian::new(energy, &t.jacobian(z));
+            let jacobian = t.jacobian(z);
+            let hessian = ProjectedHessian::new(energy, &jacobian);
+            let (mut gradient, mut matrix) = (hessian.gradient, hessian.matrix());
+            if let Some(pull) = Alignment::new(t, &jacobian) {
+                pull.add_to(&jacobian, &mut gradient, &mut matrix);
+            }
             for (k, &g) in t.gradients.iter().enumerate() {
-                let [x, y] = at_corner(hessian.gradient, g);
+                let [x, y] = at_corner(gradient, g);
                 (local[2 * k], local[2 * k + 1]) = (t.weight * x, t.weight * y);
             }
             // Corner coordinates change a row of the Jacobian by their gradient.
-            let matrix = hessian.matrix();
             let along = |row: &[f64; 4], i: usize| {
                 let ([x, y], at) = (t.gradients[i / 2], 2 * (i % 2));
                 row[at] * x + row[at + 1] * y

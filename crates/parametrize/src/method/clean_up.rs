@@ -1,6 +1,7 @@
 //! The stage that takes cones away.
 
 use super::domain::Domain;
+use super::options::FEWEST_CELLS;
 use super::relaxed::RelaxedLayout;
 use super::{MapOptions, Purpose, Start};
 use crate::cut::FramedCut;
@@ -16,8 +17,6 @@ const QUAD_PRICE: f64 = 0.0015;
 const QUAD_CELLS: f64 = 4.0;
 /// Spikes that are small against the cells may be flattened.
 const QUAD_DEVIATION: f64 = 3.5;
-/// A component has no fewer cells than this, however small it is: its cells are smaller then.
-const FEWEST_CELLS: f64 = 24.0;
 /// A layout has 0.65 to 1.2 times the excess energy estimated on most meshes; far more on those with thin blades, or with
 /// features close to each other, where the estimate says little about cones.
 const TRUST: f64 = 1.3;
@@ -90,13 +89,14 @@ pub(super) fn clean_up(
     let (sectors, metric) = (&domain.sectors, &domain.metric);
     let CleanUpTerms { price, count, largest_deviation } = terms;
     let options = CleanUpOptions { price, count, largest_deviation };
-    let cleaned = rounding::clean_up(sectors, metric, &rounded.matched, &options, watch);
-    let Ok((matched, stats)) = unless_cancelled(cleaned)? else { return Ok(None) };
+    let cleaned =
+        rounding::clean_up(sectors, metric, rounded, domain.guide.as_ref(), &options, watch);
+    let Ok((start, stats)) = unless_cancelled(cleaned)? else { return Ok(None) };
     if stats.cancelled + stats.moved == 0 {
         return Ok(None);
     }
     watch.pulse()?;
-    let start = fix_holonomy(sectors, metric, matched)?;
+    let start = fix_holonomy(sectors, metric, start, domain.guide.as_ref())?;
     watch.pulse()?;
     let worth = price * f64::from(stats.saved);
     Ok(Some(Cleaned { start, estimate: stats.energy, worth }))

@@ -3,6 +3,7 @@
 use super::MapOptions;
 use crate::cut::Unfolding;
 use crate::features::{CornerRule, ReleasedFeature, Sectors, drop_conflicts, release_near};
+use crate::field::Guide;
 use crate::layout::exact::{Defects, ExactLayout};
 use crate::layout::ladder::SeamlessLayout;
 use num_complex::Complex64;
@@ -32,6 +33,8 @@ pub(super) struct Domain<'m> {
     pub(super) lengthening: f64,
     /// Features that are not aligned.
     pub(super) released: Vec<ReleasedFeature>,
+    /// Directions to follow.
+    pub(super) guide: Option<Guide>,
     /// Largest index of a cone, quarters.
     largest_index: i32,
     /// Where aligned curves have corners.
@@ -54,10 +57,13 @@ impl<'m> Domain<'m> {
         let (features, released) = drop_conflicts(mesh, positions, surface, features);
         let sectors = Sectors::with_corners(mesh, surface, &features, corners)
             .with_largest_index(largest_index);
+        let metric = surface.opened(mesh).unwrap_or_else(|| surface.clone());
+        let guide = options.guide(&sectors, positions, &metric);
         Self {
             sectors,
             surface,
-            metric: surface.opened(mesh).unwrap_or_else(|| surface.clone()),
+            metric,
+            guide,
             lengthening: 0.0,
             released,
             largest_index,

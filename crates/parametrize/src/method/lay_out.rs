@@ -25,7 +25,8 @@ pub(super) fn lay_out<'m>(
 ) -> Result<(Domain<'m>, Rounding, RelaxedLayout), MethodError> {
     let Some(cleaned) = cleaned else {
         let (domain, rounding, layout) = lay_out_rounded(domain, rounding, start, options, watch)?;
-        return Ok((domain, rounding, relax(layout, watch)?));
+        let layout = relax(layout, domain.guide.as_ref(), watch)?;
+        return Ok((domain, rounding, layout));
     };
     let without = match lay_out_cleaned(&domain, cleaned, watch)? {
         Some(layout) if cleaned.is_met_by(&layout) => return Ok((domain, rounding, layout)),
@@ -54,12 +55,16 @@ fn lay_out_cleaned(
     cleaned: &Cleaned,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
-    // Between features the last rung seldom helps, and costs most.
-    let effort = if domain.any_aligned() { LayoutEffort::Brief } else { LayoutEffort::Thorough };
+    // Between features the last rung seldom helps, and costs most; along a guide more cones depend on it.
+    let effort = if domain.any_aligned() && domain.guide.is_none() {
+        LayoutEffort::Brief
+    } else {
+        LayoutEffort::Thorough
+    };
     let (sectors, metric) = (&domain.sectors, &domain.metric);
     let layout = ladder::lay_out(sectors, metric, &cleaned.start, effort, watch);
     match unless_cancelled(layout)? {
-        Ok(Ok(layout)) => Ok(Some(relax(layout, watch)?)),
+        Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), watch)?)),
         Ok(Err(_)) | Err(_) => Ok(None),
     }
 }

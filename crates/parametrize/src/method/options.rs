@@ -1,6 +1,7 @@
 //! Settings of the direct method.
 
-use crate::features::{CornerRule, LARGEST_INDEX};
+use crate::features::{CornerRule, LARGEST_INDEX, Sectors};
+use crate::field::Guide;
 use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::map::Tolerance;
@@ -22,6 +23,11 @@ pub enum Purpose {
     },
 }
 
+/// A component has no fewer cells than this, however small it is: its cells are smaller then.
+pub(super) const FEWEST_CELLS: f64 = 24.0;
+/// Directions for textures are those over this part of the side of a component, as for some thousand quads.
+const TEXTURE_CELL: f64 = 0.02;
+
 /// Settings of the direct method.
 #[derive(Debug, Clone, Copy)]
 pub struct MapOptions {
@@ -36,6 +42,8 @@ pub struct MapOptions {
     /// The least turn of a corner of aligned curves, degrees: in itself, and for quads from the mean direction over a
     /// cell before it to that after it.
     pub corner_angle: f64,
+    /// How much the map follows the principal directions of the surface, from 0 to 1.
+    pub alignment: f64,
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`](super::MapError::Released)) rather than a
     /// line in the result.
     pub strict_features: bool,
@@ -55,6 +63,7 @@ impl Default for MapOptions {
             purpose: Purpose::default(),
             cone_price: None,
             corner_angle: 45.0,
+            alignment: 0.0,
             strict_features: false,
             polish: Some(PolishOptions::default()),
             objective: None,
@@ -71,6 +80,25 @@ impl MapOptions {
             Purpose::Quads { edge_length } => edge_length / metric.unit,
         };
         CornerRule { least: self.corner_angle / 90.0, reach }
+    }
+
+    /// The directions to follow, if any.
+    pub(super) fn guide(
+        &self,
+        sectors: &Sectors<'_>,
+        positions: &[[f64; 3]],
+        metric: &Metric,
+    ) -> Option<Guide> {
+        let side = metric.total_area().sqrt();
+        let cell = match self.purpose {
+            Purpose::Texture => TEXTURE_CELL * side,
+            Purpose::Quads { edge_length } => {
+                (edge_length / metric.unit).min(side / FEWEST_CELLS.sqrt())
+            }
+        };
+        let guide =
+            || Guide::along_curvature(sectors, positions, metric, cell, self.alignment).ok();
+        if self.alignment > 0.0 { guide() } else { None }
     }
 
     /// Largest index of a cone that is not prescribed, quarters.

@@ -1,6 +1,7 @@
 //! From a flip-free layout to one of low distortion.
 
 use crate::energy::SymmetricDirichlet;
+use crate::field::Guide;
 use crate::layout::ladder::SeamlessLayout;
 use crate::layout::newton::NewtonOptions;
 use crate::layout::polish::{PolishOptions, polish as lower_tau};
@@ -8,6 +9,9 @@ use crate::progress::{SolveError, Watch};
 
 /// To the minimum: most layouts are there after ten iterations, and the energy is compared in the sixth digit.
 const SETTLE: NewtonOptions = NewtonOptions { max_iterations: 40, tolerance: 1e-6 };
+
+/// Mean energy of a map that lies at 45 degrees to directions that count fully: three quarters of what an isometry has.
+const GUIDE_ENERGY: f64 = 3.0;
 
 /// A layout of minimum mean symmetric Dirichlet energy, at its best scale.
 pub(super) struct RelaxedLayout {
@@ -24,14 +28,18 @@ impl RelaxedLayout {
     }
 }
 
-/// Minimises the energy.
+/// Minimises the energy, together with what lying askew to a guide costs.
 ///
 /// # Errors
 /// When the caller asks to stop.
 pub(super) fn relax(
     mut layout: SeamlessLayout,
+    guide: Option<&Guide>,
     watch: &mut Watch<'_, '_>,
 ) -> Result<RelaxedLayout, SolveError> {
+    if let Some(guide) = guide {
+        layout.space.problem_mut().follow(guide, GUIDE_ENERGY);
+    }
     let start = std::mem::take(&mut layout.y);
     let solution = layout.space.minimize(start, &SymmetricDirichlet, &SETTLE, watch)?;
     let figures = layout.space.figures(&solution.y);

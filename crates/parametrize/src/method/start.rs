@@ -98,7 +98,8 @@ impl Start {
     ) -> Result<Result<Rounding, Defects>, MethodError> {
         let (mesh, sectors, metric) = (domain.mesh(), &domain.sectors, &domain.metric);
         let rounded = |unfolding, watch: &mut Watch<'_, '_>| {
-            round(sectors, metric, unfolding, &options.rounding, watch)
+            let guide = domain.guide.as_ref();
+            round(sectors, metric, unfolding, guide, &options.rounding, watch)
         };
         Ok(Ok(match self {
             Start::Mesh => return Ok(repaired(domain, rounded(unfolding, watch)?)),
@@ -126,7 +127,8 @@ fn with_cones(
     if shifts == 0 {
         return Ok(rounding);
     }
-    let start = fix_holonomy(sectors, metric, matched)?;
+    let start = FramedCut { matched, frames: rounding.start.frames };
+    let start = fix_holonomy(sectors, metric, start, domain.guide.as_ref())?;
     let stats = RoundingStats { shifted_seams: shifts, ..rounding.stats };
     Ok(Rounding { start, stats })
 }

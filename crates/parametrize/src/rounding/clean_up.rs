@@ -2,12 +2,13 @@
 
 use super::reach::{Ball, BallSearch};
 use super::surrogate::{Response, Surrogate};
-use crate::cut::MatchedCut;
-use crate::features::Sectors;
+use crate::cut::FramedCut;
+use crate::features::{Road, Sectors};
+use crate::field::Guide;
 use crate::ordered::Ordered;
 use crate::progress::{Cancelled, SolveError, Watch};
 use seamstress_linalg::NotPositiveDefinite;
-use seamstress_mesh::{HalfedgeData, Metric, Vertex, VertexData};
+use seamstress_mesh::{Halfedge, HalfedgeData, Metric, Vertex, VertexData};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::FRAC_PI_2;
@@ -63,12 +64,17 @@ const REACH: f64 = 4.0;
 /// Most cones that go at the same time, and the part of its profit that each must keep when those before it have gone.
 const TOGETHER: usize = 4;
 const STANDING: f64 = 0.5;
+/// A unit of index turns the directions on one side of its way by a quarter. Where they count fully that costs so many prices
+/// of a cone for a cell of the way.
+const TENSION: f64 = 1.2;
 /// Mean symmetric Dirichlet energy that a move has to gain: a part in 500 of the price of a cone, or cones walk to
 /// and fro.
 const MINIMUM_GAIN: f64 = 1e-6;
 
 /// Cancels pairs of cones and moves cones while the surrogate energy grows by less than the price per cone removed; the
 /// matchings change along the way.
+///
+/// With a guide the ways that cones take have a price too, since they turn its directions.
 ///
 /// The surrogate tells exactly what a unit of index that goes from a cone to any sector around it changes. In every round
 /// the cones go, the most profitable first, each where it gains most: onto an opposite cone, or to an empty sector. In
@@ -79,12 +85,13 @@ const MINIMUM_GAIN: f64 = 1e-6;
 pub fn clean_up(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    matched: &MatchedCut,
+    start: &FramedCut,
+    guide: Option<&Guide>,
     options: &CleanUpOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(MatchedCut, CleanUpStats), SolveError> {
-    let index = matched.sector_indices(sectors, metric);
-    let mut work = CleanUp::new(sectors, metric, index, *options)?;
+) -> Result<(FramedCut, CleanUpStats), SolveError> {
+    let index = start.matched.sector_indices(sectors, metric);
+    let mut work = CleanUp::new(sectors, metric, index, guide, *options)?;
     let before = work.count();
     for some in work.cones().chunks(LOOKS) {
         watch.pulse()?;
@@ -102,7 +109,7 @@ pub fn clean_up(
     }
     stats.saved = before - work.count();
     stats.energy = work.surrogate.energy();
-    Ok((matched.turned(sectors, &work.transport).0, stats))
+    Ok((start.turned(sectors, &work.transport), stats))
 }
 
 struct CleanUp<'a> {
@@ -117,6 +124,8 @@ struct CleanUp<'a> {
     /// Net units sent across each edge, negated on twins.
     transport: HalfedgeData<i32>,
     search: BallSearch<'a>,
+    /// Per edge what turning the directions beside it costs; none without a guide.
+    tension: Option<HalfedgeData<f64>>,
     /// Where each cone may go.
     reach: HashMap<Vertex, Reach>,
 }
@@ -134,6 +143,7 @@ impl<'a> CleanUp<'a> {
         sectors: &'a Sectors<'a>,
         metric: &'a Metric,
         index: VertexData<i32>,
+        guide: Option<&Guide>,
         options: CleanUpOptions,
     ) -> Result<Self, NotPositiveDefinite> {
         let slit = sectors.slit();
@@ -157,6 +167,7 @@ impl<'a> CleanUp<'a> {
             range: slit.vertices().map(range).collect(),
             transport: HalfedgeData::filled(sectors.slit().n_halfedges(), 0),
             search: BallSearch::new(sectors, metric, part),
+            tension: guide.map(|guide| tension(sectors, metric, guide, options.price)),
             reach: HashMap::new(),
             sectors,
             metric,
@@ -197,29 +208,43 @@ impl<'a> CleanUp<'a> {
         self.options.price * f64::from(removed)
     }
 
-    /// What is gained when a unit of the cone at `s` goes to `b`, beyond `least`; none if it may not.
-    fn profit(&self, s: Vertex, b: Vertex, response: &Response, least: f64) -> Option<f64> {
+    /// What it costs to turn the directions on one side of a road that a unit of the cone at `s` takes: less than nothing
+    /// where units that went before are undone.
+    fn toll(&self, s: Vertex, road: Road) -> f64 {
+        let Some(tension) = &self.tension else { return 0.0 };
+        let before = self.transport[road.halfedge];
+        let after = before + self.excess[s].signum() * road.sign;
+        f64::from(after.abs() - before.abs()) * tension[road.halfedge]
+    }
+
+    /// What is gained when a unit of the cone at `s` goes to `b` for a toll.
+    fn profit(&self, s: Vertex, b: Vertex, toll: f64) -> f64 {
         let sign = self.excess[s].signum();
-        let profit = self.budget(s, b) - self.surrogate.change(sign, [s, b], response);
-        let may_go = profit > least
-            && sign != 0
+        self.budget(s, b) - self.surrogate.change(sign, [s, b], &self.reach[&s].response) - toll
+    }
+
+    /// Whether a unit of the cone at `s` may go to `b`.
+    fn may_go(&self, s: Vertex, b: Vertex) -> bool {
+        let sign = self.excess[s].signum();
+        sign != 0
             && self.excess[b] * sign <= 0
             && self.allows(s, self.excess[s] - sign)
-            && self.allows(b, self.excess[b] + sign);
-        may_go.then_some(profit)
+            && self.allows(b, self.excess[b] + sign)
     }
 
     /// The best move of a cone.
     fn best(&self, s: Vertex, cancels_only: bool) -> Option<Move> {
         let sign = self.excess[s].signum();
-        let Reach { ball, response } = self.reach.get(&s)?;
+        let ball = &self.reach.get(&s)?.ball;
+        let tolls = ball.sums(|road| self.toll(s, road));
         let mut best = None;
         let mut least = MINIMUM_GAIN;
-        for (place, &b) in ball.sectors.iter().enumerate().skip(1) {
+        for (place, (&b, toll)) in ball.sectors.iter().zip(tolls).enumerate().skip(1) {
             if cancels_only && self.excess[b] * sign >= 0 {
                 continue;
             }
-            if let Some(profit) = self.profit(s, b, response, least) {
+            let profit = self.profit(s, b, toll);
+            if profit > least && self.may_go(s, b) {
                 least = profit;
                 best = Some(Move { s, b, place, profit });
             }
@@ -279,9 +304,10 @@ impl<'a> CleanUp<'a> {
             self.look_around(&ends);
             for to in moves {
                 // What those before it did may have left little of its profit.
-                let response = &self.reach[&to.s].response;
-                let now = self.profit(to.s, to.b, response, STANDING * to.profit);
-                if now.is_none() {
+                let way = self.reach[&to.s].ball.way_back(to.place);
+                let toll = way.map(|road| self.toll(to.s, road)).sum();
+                let stands = self.profit(to.s, to.b, toll) > STANDING * to.profit;
+                if !(stands && self.may_go(to.s, to.b)) {
                     queue.push((Ordered(STANDING * to.profit), Reverse(to.s), 0));
                 } else if self.send(to) {
                     cancelled += 1;
@@ -296,6 +322,17 @@ impl<'a> CleanUp<'a> {
         self.surrogate.refresh(self.metric, &index.collect());
         Ok((cancelled, moved))
     }
+}
+
+/// What turning the directions beside each edge by a quarter costs: see [`TENSION`].
+fn tension(sectors: &Sectors<'_>, metric: &Metric, guide: &Guide, price: f64) -> HalfedgeData<f64> {
+    let slit = sectors.slit();
+    let unit = TENSION * price / guide.cell;
+    let of = |h: Halfedge| {
+        let [left, right] = [h, slit.twin(h).unwrap_or(h)].map(|h| guide.weight[h.face()]);
+        unit * metric.length[h] * (left + right) / 2.0
+    };
+    slit.halfedges().map(of).collect()
 }
 
 /// What is known of a cone: where it may go, and what it changes.

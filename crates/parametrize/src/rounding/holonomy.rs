@@ -2,15 +2,20 @@
 
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::features::Sectors;
-use crate::field::frames_of;
+use crate::field::{Guide, frames_of};
+use crate::quarter::nearest_quarter;
+use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, Vertex};
 use seamstress_parallel::prelude::*;
 use std::collections::VecDeque;
+use std::f64::consts::FRAC_PI_2;
 
 /// Weights of dual edges are inverse cotangent sums, these kept in this range.
 const COTANGENT_RANGE: (f64, f64) = (0.1, 10.0);
+/// Directions that count fully pull with as much as turning across the mesh over so many cells costs.
+const PULL_LENGTH: f64 = 4.0;
 /// Passes of the integer descent; it ends by itself long before.
 const PASSES: usize = 50;
 /// Added to the diagonal of the face Laplacian, whose constants would be its null space where nothing is held: far below
@@ -30,7 +35,8 @@ const MINIMUM_GAIN: f64 = 1e-9;
 ///
 /// The matchings' difference to the isometric rotations is a flow on dual edges. The best rotation of every face,
 /// which is its frame, takes part of it away; what remains is its divergence-free part, whose weighted square is made
-/// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too).
+/// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too). With a guide the
+/// rotations are pulled to it, from where the frames of the start are.
 /// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
 /// moves. The cones stay.
 ///
@@ -39,20 +45,23 @@ const MINIMUM_GAIN: f64 = 1e-9;
 pub fn fix_holonomy(
     sectors: &Sectors<'_>,
     metric: &Metric,
-    mut matched: MatchedCut,
+    start: FramedCut,
+    guide: Option<&Guide>,
 ) -> Result<FramedCut, NotPositiveDefinite> {
-    let projector = Projector::new(sectors, metric, &matched.unfolding)?;
+    let FramedCut { mut matched, frames } = start;
+    let pull = guide.map(|guide| Pull::new(sectors, metric, guide, &matched.unfolding, &frames));
+    let projector = Projector::new(sectors, metric, &matched.unfolding, pull)?;
     let excess = |matched: &MatchedCut| -> Vec<(u32, f64)> {
         matched.excess().enumerate().map(|(s, excess)| (s as u32, excess)).collect()
     };
     let cycles = turning_cycles(sectors, &matched.unfolding);
     if !cycles.is_empty() {
-        let target = projector.residual(&excess(&matched));
+        let target = projector.residual(&excess(&matched), 1.0);
         let columns: Vec<Vec<f64>> = cycles
             .par_iter()
             .map(|cycle| {
                 let flow: Vec<_> = cycle.iter().map(|&(s, sign)| (s, f64::from(sign))).collect();
-                projector.residual(&flow)
+                projector.residual(&flow, 0.0)
             })
             .collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -69,6 +78,38 @@ pub fn fix_holonomy(
     let turns = projector.turns(&excess(&matched));
     let frames = frames_of(sectors.slit(), metric, &matched.unfolding, &turns);
     Ok(FramedCut { matched, frames })
+}
+
+/// What pulls the rotations of the faces to a guide.
+struct Pull {
+    /// Per face the rotation wanted, quarters.
+    turn: Vec<f64>,
+    /// Per face how much it counts.
+    weight: Vec<f64>,
+}
+
+impl Pull {
+    /// To the rotations of the guide nearest to those there are.
+    fn new(
+        sectors: &Sectors<'_>,
+        metric: &Metric,
+        guide: &Guide,
+        unfolding: &Unfolding,
+        frames: &[Complex64],
+    ) -> Self {
+        let isometric = frames_of(sectors.slit(), metric, unfolding, &vec![0.0; frames.len()]);
+        let mut turn = vec![0.0; frames.len()];
+        for &f in &unfolding.tree.order {
+            let wanted = nearest_quarter(guide.rotation[f], frames[f.at()]);
+            let off = (wanted * isometric[f.at()].conj()).arg() / FRAC_PI_2;
+            let before = unfolding.tree.parent[f].map_or(0.0, |h| turn[h.face().at()]);
+            // Lifted along the tree, across which full turns are zero.
+            turn[f.at()] = off + 4.0 * ((before - off) / 4.0).round();
+        }
+        let stiffness = (PULL_LENGTH * guide.cell).powi(-2);
+        let weight = |(weight, area): (&f64, &f64)| stiffness * weight * area;
+        Self { turn, weight: guide.weight.iter().zip(metric.area.iter()).map(weight).collect() }
+    }
 }
 
 /// A basis of the cycles of the graph of turning edges, the free sectors merged to one: signed edges.
@@ -133,6 +174,7 @@ struct Projector {
     /// Dual edge of each turning edge.
     of_turning: Vec<u32>,
     weights: Vec<f64>,
+    pull: Option<Pull>,
     faces: usize,
     nodes: usize,
     cholesky: Cholesky<f64>,
@@ -143,6 +185,7 @@ impl Projector {
         sectors: &Sectors<'_>,
         metric: &Metric,
         unfolding: &Unfolding,
+        pull: Option<Pull>,
     ) -> Result<Self, NotPositiveDefinite> {
         let slit = sectors.slit();
         let ground = slit.n_faces() as u32;
@@ -165,6 +208,10 @@ impl Projector {
         for &k in pattern.diagonal() {
             matrix[k as usize] = SHIFT;
         }
+        for (&k, weight) in pattern.diagonal().iter().zip(pull.iter().flat_map(|pull| &pull.weight))
+        {
+            matrix[k as usize] += weight;
+        }
         for (&[f, g], weight) in sides.iter().zip(&weights) {
             matrix[pattern.diagonal()[f as usize] as usize] += weight;
             matrix[pattern.diagonal()[g as usize] as usize] += weight;
@@ -177,7 +224,7 @@ impl Projector {
         let mut number = vec![0u32; slit.n_halfedges()];
         edges.iter().enumerate().for_each(|(e, &h)| number[h.at()] = e as u32);
         let of_turning = unfolding.turning.iter().map(|&h| number[h.at()]).collect();
-        Ok(Self { sides, of_turning, weights, faces: slit.n_faces(), nodes, cholesky })
+        Ok(Self { sides, of_turning, weights, pull, faces: slit.n_faces(), nodes, cholesky })
     }
 
     /// A flow, given on turning edges, on all dual edges.
@@ -189,30 +236,40 @@ impl Projector {
         x
     }
 
-    /// The rotations of the nodes whose differences across dual edges are nearest to a flow.
-    fn potential(&self, x: &[f64]) -> Vec<f64> {
+    /// The rotations of the nodes whose differences across dual edges are nearest to a flow, and they themselves to
+    /// a multiple of what they are pulled to.
+    fn potential(&self, x: &[f64], pulled: f64) -> Vec<f64> {
         let mut turn = vec![0.0; self.nodes];
         for ((&[left, right], x), w) in self.sides.iter().zip(x).zip(&self.weights) {
             turn[right as usize] += w * x;
             turn[left as usize] -= w * x;
         }
+        if let Some(Pull { turn: wanted, weight }) = &self.pull {
+            for ((turn, wanted), weight) in turn.iter_mut().zip(wanted).zip(weight) {
+                *turn += pulled * weight * wanted;
+            }
+        }
         self.cholesky.solve_columns(&mut turn, 1);
         turn
     }
 
-    /// Square root of the weight times the remaining flow, per dual edge.
-    fn residual(&self, flow: &[(u32, f64)]) -> Vec<f64> {
+    /// What is left of a flow, and of the pull, by square roots of weights.
+    fn residual(&self, flow: &[(u32, f64)], pulled: f64) -> Vec<f64> {
         let mut x = self.spread(flow);
-        let turn = self.potential(&x);
+        let turn = self.potential(&x, pulled);
         for ((&[left, right], x), w) in self.sides.iter().zip(&mut x).zip(&self.weights) {
             *x = (*x - (turn[right as usize] - turn[left as usize])) * w.sqrt();
+        }
+        if let Some(Pull { turn: wanted, weight }) = &self.pull {
+            let left = turn.iter().zip(wanted).zip(weight);
+            x.extend(left.map(|((turn, wanted), w)| (pulled * wanted - turn) * w.sqrt()));
         }
         x
     }
 
     /// The best rotations of the faces for a flow, against the ground if there is one.
     fn turns(&self, flow: &[(u32, f64)]) -> Vec<f64> {
-        let mut turn = self.potential(&self.spread(flow));
+        let mut turn = self.potential(&self.spread(flow), 1.0);
         let ground = turn.get(self.faces).copied().unwrap_or(0.0);
         turn.truncate(self.faces);
         turn.iter_mut().for_each(|x| *x -= ground);

@@ -20,6 +20,7 @@ pub use surrogate::Surrogate;
 
 use crate::cut::{FramedCut, Unfolding};
 use crate::features::Sectors;
+use crate::field::Guide;
 use crate::mixed_integer::{MixedIntegerStats, round_mixed_integer};
 use crate::progress::{SolveError, Watch};
 use progressive::round_progressively;
@@ -67,6 +68,7 @@ pub fn round(
     sectors: &Sectors<'_>,
     metric: &Metric,
     unfolding: Unfolding,
+    guide: Option<&Guide>,
     options: &RoundingOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, SolveError> {
@@ -79,5 +81,5 @@ pub fn round(
         let stats = RoundingStats { rounds, layouts, shifted_seams: 0, mixed_integer };
         return Ok(Rounding { start, stats });
     }
-    round_progressively(sectors, metric, unfolding, options, watch)
+    round_progressively(sectors, metric, unfolding, guide, options, watch)
 }

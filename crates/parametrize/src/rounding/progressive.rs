@@ -7,8 +7,10 @@ use super::weights::SectorWeights;
 use super::{Rounding, RoundingStats};
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::features::Sectors;
+use crate::field::Guide;
 use crate::progress::{SolveError, Watch};
 use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
+use std::f64::consts::FRAC_PI_2;
 
 /// Cost threshold of the first and last round.
 const FIRST_THRESHOLD: f64 = 0.05;
@@ -17,6 +19,8 @@ const LAST_THRESHOLD: f64 = 1.0;
 const SAME_COST: f64 = 1e-9;
 /// A new layout is worth its time once this share of the seams was rounded.
 const LAYOUT_SHARE: f64 = 0.005;
+/// Layout iterations before the first round towards a guide, which is far away.
+const GUIDED_ITERATIONS: usize = 20;
 /// Roundings that turn an edge by more than this (quarters) keep apart within a round.
 const LARGE_TURN: f64 = 0.1;
 
@@ -32,6 +36,7 @@ pub(super) fn round_progressively(
     sectors: &Sectors<'_>,
     metric: &Metric,
     unfolding: Unfolding,
+    guide: Option<&Guide>,
     options: &RoundingOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, SolveError> {
@@ -39,6 +44,14 @@ pub(super) fn round_progressively(
     let mut relaxation = Relaxation::new(sectors, metric, &unfolding)?;
     let weights = SectorWeights::new(sectors, options);
     let mut rotation = unfolding.isometric.clone();
+    if let Some(guide) = guide {
+        let turned = relaxation.follow(guide, metric, &unfolding.tree, GUIDED_ITERATIONS)?;
+        for (edge, (r, &h)) in rotation.iter_mut().zip(&unfolding.turning).enumerate() {
+            let right = slit.twin(h).map_or(0.0, |t| turned[t.face()]);
+            *r -= (right - turned[h.face()]) / FRAC_PI_2;
+            *r = relaxation.rotation(edge, *r);
+        }
+    }
     let mut matching = vec![0; rotation.len()];
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;

@@ -71,6 +71,15 @@ impl<'a> BallSearch<'a> {
 }
 
 impl Ball {
+    /// Sums over the roads from the middle to each place.
+    pub(super) fn sums(&self, of: impl Fn(Road) -> f64) -> Vec<f64> {
+        let mut sums = Vec::with_capacity(self.roads.len());
+        for road in &self.roads {
+            sums.push(road.map_or(0.0, |(before, road)| sums[before as usize] + of(road)));
+        }
+        sums
+    }
+
     /// The roads from a place back to the middle.
     pub(super) fn way_back(&self, mut place: usize) -> impl Iterator<Item = Road> + '_ {
         std::iter::from_fn(move || {

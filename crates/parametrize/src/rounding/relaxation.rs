@@ -1,12 +1,13 @@
 //! The layout between roundings: as rigid as possible, rounded edges held, the others free.
 
 use super::system::RelaxationSystem;
-use crate::cut::{Cut, Unfolding};
+use crate::cut::{Cut, DualTree, Unfolding};
 use crate::features::Sectors;
-use crate::quarter::{direction, unit};
+use crate::field::Guide;
+use crate::quarter::{direction, nearest_quarter, unit};
 use num_complex::Complex64;
 use seamstress_linalg::{Buckets, NotPositiveDefinite};
-use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
+use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -27,6 +28,9 @@ pub(super) struct Relaxation {
     wedge_of_corner: Vec<u32>,
     corners_of_wedge: Buckets,
     frames: Vec<Complex64>,
+    /// Per face the rotation wanted, up to quarter turns, by what it counts: as much as rigidity where directions count
+    /// fully. Empty without a guide.
+    wanted: Vec<Complex64>,
     /// Wedges of each seam: origin and tip on the left, origin and tip on the right.
     seams: Vec<[u32; 4]>,
     /// All aligned half-edges.
@@ -71,6 +75,7 @@ impl Relaxation {
             wedge_of_corner: cut.wedge.to_vec(),
             corners_of_wedge: Buckets::new(n, &cut.wedge),
             frames: vec![Complex64::ONE; faces.len()],
+            wanted: Vec::new(),
             system: RelaxationSystem::new(n, cliques, sectors.any_aligned())?,
             turning: unfolding.turning[seams.len()..].iter().map(|&h| place[h]).collect(),
             seams,
@@ -87,6 +92,40 @@ impl Relaxation {
             relaxation.align(place[*h], 0);
         }
         Ok(relaxation)
+    }
+
+    /// Turns every face to a guide, which local steps follow from now on, and relaxes the layout; how far each was turned
+    /// back at first, radians.
+    ///
+    /// Of the four directions of a face the one is taken that turns it least against the face before it in the
+    /// tree: chosen face by face they would make pairs of cones along the tree.
+    ///
+    /// # Errors
+    /// When the matrix is not positive definite to working precision.
+    pub(super) fn follow(
+        &mut self,
+        guide: &Guide,
+        metric: &Metric,
+        tree: &DualTree,
+        iterations: usize,
+    ) -> Result<FaceData<f64>, NotPositiveDefinite> {
+        self.local_step(0.0);
+        let mut turned = FaceData::filled(self.frames.len(), 0.0);
+        for &f in &tree.order {
+            let off = (self.frames[f.at()] * guide.rotation[f].conj()).arg();
+            let before = tree.parent[f].map_or(0.0, |h| turned[h.face()]);
+            turned[f] = off + ((before - off) / FRAC_PI_2).round() * FRAC_PI_2;
+        }
+        for (frame, by) in self.frames.iter_mut().zip(turned.iter()) {
+            *frame *= Complex64::from_polar(1.0, -by);
+        }
+        let faces = guide.weight.iter().zip(metric.area.iter());
+        let pull = |(r, (weight, area)): (&Complex64, (&f64, &f64))| r * (2.0 * weight * area);
+        self.wanted = guide.rotation.iter().zip(faces).map(pull).collect();
+        self.system.factorize()?;
+        self.global_step();
+        self.steps(iterations);
+        Ok(turned)
     }
 
     /// Holds an edge at its rotation from now on.
@@ -123,19 +162,32 @@ impl Relaxation {
     /// When the matrix is not positive definite to working precision.
     pub(super) fn relax(&mut self, iterations: usize) -> Result<(), NotPositiveDefinite> {
         self.system.factorize()?;
+        self.steps(iterations);
+        Ok(())
+    }
+
+    fn steps(&mut self, iterations: usize) {
         for _ in 0..iterations {
             self.local_step(OVERSHOOT);
-            self.right_hand_side();
-            self.system.solve(&mut self.z);
+            self.global_step();
         }
-        Ok(())
+    }
+
+    fn global_step(&mut self) {
+        self.right_hand_side();
+        self.system.solve(&mut self.z);
     }
 
     fn local_step(&mut self, overshoot: f64) {
         let (z, wedges, weights) = (&self.z, &self.wedge_of_corner, &self.corner_weights);
+        let wanted = &self.wanted;
         self.frames.par_iter_mut().enumerate().with_min_len(4096).for_each(|(f, frame)| {
             let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
-            let best = direction(term(3 * f) + term(3 * f + 1) + term(3 * f + 2));
+            let mut similar = term(3 * f) + term(3 * f + 1) + term(3 * f + 2);
+            if let Some(&wanted) = wanted.get(f) {
+                similar += nearest_quarter(wanted, similar);
+            }
+            let best = direction(similar);
             *frame = direction(best + overshoot * (best - *frame));
         });
     }

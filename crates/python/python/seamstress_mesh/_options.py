@@ -43,6 +43,7 @@ class MapOptions(RunOptions, total=False):
     align_boundary: bool
     features_strict: bool
     corner_angle: float
+    align: float | None
     cone_bias: float
     cone_price: float | None
     corner_weight: float

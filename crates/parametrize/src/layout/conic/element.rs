@@ -73,6 +73,7 @@ mod tests {
         wedges: [0, 1, 2],
         gradients: [[-0.7, -1.1], [0.9, -0.2], [-0.2, 1.3]],
         weight: 1.0,
+        wanted: Complex64::ZERO,
     };
 
     /// The parts of unit moves of the six coordinates: the matrix of the linear map, by columns.

@@ -1,0 +1,105 @@
+//! Principal directions of a surface, at a scale.
+
+use super::convert::{axes, cross, dot};
+use num_complex::Complex64;
+use seamstress_linalg::ordering::{Graph, fill_reducing_order};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
+use seamstress_mesh::{Face, FaceData, Halfedge, Metric, TriMesh};
+
+/// Cotangent weights of edges are kept in this range: needles would drown everything else.
+const WEIGHT_RANGE: (f64, f64) = (0.02, 20.0);
+
+/// Entries of a symmetric tensor of space, by their places.
+const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// Per face half the difference of the principal curvatures, as a number whose argument is twice the angle from the face's
+/// first edge to the direction of least curvature; in the units of the metric.
+///
+/// The curvature of an edge is its dihedral angle, along it (Cohen-Steiner and Morvan 2003); tensors are
+/// averaged over about `radius` by a step of diffusion.
+///
+/// # Errors
+/// When the diffusion cannot be solved.
+pub(super) fn anisotropy(
+    mesh: &TriMesh,
+    positions: &[[f64; 3]],
+    metric: &Metric,
+    radius: f64,
+) -> Result<FaceData<Complex64>, NotPositiveDefinite> {
+    let n = mesh.n_vertices();
+    let edge = |h: Halfedge| {
+        let (a, b) = (positions[mesh.origin(h).at()], positions[mesh.tip(h).at()]);
+        [0, 1, 2].map(|k| (b[k] - a[k]) / metric.unit)
+    };
+    let axes: FaceData<[[f64; 3]; 2]> = mesh.faces().map(|f| axes(mesh, positions, f)).collect();
+    let normal = |f: Face| cross(axes[f][0], axes[f][1]);
+    // Columns of integrals over the vertices' cells, one for each entry.
+    let mut tensors = vec![0.0; ENTRIES.len() * n];
+    for h in mesh.interior_edges() {
+        let Some(t) = mesh.twin(h) else { continue };
+        let (edge, left, right) = (edge(h), normal(h.face()), normal(t.face()));
+        let length = dot(edge, edge).sqrt();
+        if length == 0.0 {
+            continue;
+        }
+        let along = edge.map(|x| x / length);
+        let bend = dot(cross(left, right), along).atan2(dot(left, right));
+        for (k, (p, q)) in ENTRIES.into_iter().enumerate() {
+            let entry = 0.5 * bend * length * along[p] * along[q];
+            tensors[k * n + mesh.origin(h).at()] += entry;
+            tensors[k * n + mesh.tip(h).at()] += entry;
+        }
+    }
+    diffuse(mesh, metric, radius * radius, &mut tensors)?;
+    let of_face = |f: Face| {
+        let [x, y] = axes[f];
+        let corners = mesh.face_vertices(f);
+        let mean = |k: usize| corners.iter().map(|v| tensors[k * n + v.at()]).sum::<f64>() / 3.0;
+        let tensor: [f64; 6] = std::array::from_fn(mean);
+        let form = |a: [f64; 3], b: [f64; 3]| {
+            let term = |(k, (p, q)): (usize, (usize, usize))| {
+                tensor[k] * if p == q { a[p] * b[p] } else { a[p] * b[q] + a[q] * b[p] }
+            };
+            ENTRIES.into_iter().enumerate().map(term).sum::<f64>()
+        };
+        Complex64::new((form(x, x) - form(y, y)) / 2.0, form(x, y))
+    };
+    Ok(mesh.faces().map(of_face).collect())
+}
+
+/// Turns integrals over cells into densities, spread by diffusion for some time.
+fn diffuse(
+    mesh: &TriMesh,
+    metric: &Metric,
+    time: f64,
+    columns: &mut [f64],
+) -> Result<(), NotPositiveDefinite> {
+    let n = mesh.n_vertices();
+    let mut builder = PatternBuilder::new(n);
+    mesh.edges().for_each(|h| builder.add_clique(&[mesh.origin(h).0, mesh.tip(h).0]));
+    let pattern = builder.build();
+    let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
+    let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
+    let (cotangent, area) = (metric.cotangent(), metric.vertex_area(mesh));
+    let mut matrix = vec![0.0; pattern.len()];
+    for v in mesh.vertices() {
+        // Vertices without a face have a row of their own.
+        let area = if area[v] > 0.0 { area[v] } else { 1.0 };
+        matrix[pattern.diagonal()[v.at()] as usize] += area;
+    }
+    for h in mesh.edges() {
+        let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
+        let weight = time * (sum / 2.0).clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1);
+        let [a, b] = [mesh.origin(h), mesh.tip(h)];
+        for v in [a, b] {
+            matrix[pattern.diagonal()[v.at()] as usize] += weight;
+        }
+        if let Some(slot) = pattern.slot(a.0, b.0) {
+            matrix[slot as usize] -= weight;
+        }
+    }
+    let mut cholesky = Cholesky::analyze(&pattern, &order)?;
+    cholesky.factorize(&matrix)?;
+    cholesky.solve_columns(columns, columns.len() / n.max(1));
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! Directions that a map is to follow.
+
+use super::cross_field::rotations;
+use super::curvature::anisotropy;
+use super::face_laplacian::FaceMatrix;
+use crate::cut::isometric::turning;
+use crate::features::Sectors;
+use crate::quarter::{direction, rotation};
+use num_complex::Complex64;
+use seamstress_linalg::NotPositiveDefinite;
+use seamstress_mesh::{Face, FaceData, Halfedge, Metric};
+
+/// Difference of the principal curvatures, times the length of a cell, at which directions count half.
+const HALF_ANISOTROPY: f64 = 0.15;
+/// Curvature is averaged over this part of a cell.
+const RADIUS: f64 = 0.5;
+/// The guide is smoothed over this part of a cell where directions count fully.
+const SMOOTHING: f64 = 0.5;
+/// What the directions of aligned edges count, against at most 1 for those of curvature.
+const ALIGNED_WEIGHT: f64 = 10.0;
+
+/// Directions that a map is to follow, up to quarter turns, and how much they count.
+#[derive(Debug, Clone)]
+pub struct Guide {
+    /// Per face a rotation that lays its directions along the axes: one of four.
+    pub rotation: FaceData<Complex64>,
+    /// Per face how much its directions count, from 0 to 1.
+    pub weight: FaceData<f64>,
+    /// The length of a cell, in the unit of the metric.
+    pub cell: f64,
+}
+
+impl Guide {
+    /// The principal directions of a surface at the size of a cell, as far as they are certain: with `a` the difference of
+    /// the principal curvatures times the cell, they count `strength a^2 / (a^2 + 0.15^2)`.
+    ///
+    /// Curvature is that of the slit surface: creases that are aligned bend nothing.
+    /// Fourth powers of the directions are smoothed by one linear solve (after Knöppel et al. 2013); beside aligned
+    /// edges they are those of the edges.
+    ///
+    /// # Errors
+    /// When a system cannot be solved.
+    pub fn along_curvature(
+        sectors: &Sectors<'_>,
+        positions: &[[f64; 3]],
+        metric: &Metric,
+        cell: f64,
+        strength: f64,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let slit = sectors.slit();
+        let positions: Vec<[f64; 3]> =
+            slit.vertices().map(|s| positions[sectors.vertex(s).at()]).collect();
+        let bent = anisotropy(slit, &positions, metric, RADIUS * cell)?;
+        let certainty = |half: &Complex64| {
+            let a = 2.0 * half.norm() * cell;
+            a * a / (a * a + HALF_ANISOTROPY * HALF_ANISOTROPY)
+        };
+        let mut weight: FaceData<f64> = bent.iter().map(certainty).collect();
+        // What lays a direction along an axis is the rotation back.
+        let back = |(half, weight): (&Complex64, &f64)| direction(*half).powi(2).conj() * *weight;
+        let mut pull: FaceData<Complex64> = bent.iter().zip(weight.iter()).map(back).collect();
+        let mut stiffness = weight.clone();
+        for h in sectors.aligned() {
+            let along = Complex64::from_polar(1.0, -4.0 * turning(&metric.angle, h));
+            pull[h.face()] += ALIGNED_WEIGHT * along;
+            stiffness[h.face()] += ALIGNED_WEIGHT;
+        }
+        let rotation = smoothed(sectors, metric, &pull, &stiffness, SMOOTHING * cell)?;
+        weight.iter_mut().for_each(|weight| *weight *= strength);
+        Ok(Self { rotation, weight, cell })
+    }
+}
+
+/// Rotations, up to quarter turns, whose fourth powers `g` minimise `sum |g_right - c g_left|^2 + sum stiffness area / length^2
+/// |g - pull / stiffness|^2`, where `c` carries them across edges.
+fn smoothed(
+    sectors: &Sectors<'_>,
+    metric: &Metric,
+    pull: &FaceData<Complex64>,
+    stiffness: &FaceData<f64>,
+    length: f64,
+) -> Result<FaceData<Complex64>, NotPositiveDefinite> {
+    let slit = sectors.slit();
+    let bare = rotations(slit, metric, &FaceData::filled(slit.n_faces(), Complex64::ONE));
+    let across: Vec<Complex64> =
+        slit.interior_edges().map(|h: Halfedge| rotation(-4.0 * bare[h])).collect();
+    let share = |f: usize| metric.area[Face(f as u32)] / (length * length);
+    let mut matrix = FaceMatrix::<Complex64>::new(slit)?;
+    matrix.factorize_near(
+        |e| (1.0, -across[e]),
+        |f| share(f) * stiffness[Face(f as u32)],
+        |x| x.conj(),
+    )?;
+    let mut fourth: Vec<Complex64> =
+        pull.iter().enumerate().map(|(f, pull)| share(f) * pull).collect();
+    matrix.solve(&mut fourth);
+    Ok(fourth.iter().map(|z| Complex64::from_polar(1.0, z.arg() / 4.0)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::convert::{axes, dot};
+    use super::*;
+    use seamstress_mesh::TriMesh;
+    use seamstress_mesh::features::EdgeSet;
+    use seamstress_testkit as testkit;
+
+    #[test]
+    fn follows_the_circles_of_a_torus() {
+        let soup = testkit::torus(48, 24, 3.0, 1.0);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let sectors = Sectors::unaligned(&mesh);
+        let guide = Guide::along_curvature(&sectors, &soup.positions, &metric, 1.0, 1.0).unwrap();
+        for f in mesh.faces() {
+            let [a, b, c] = mesh.face_vertices(f).map(|v| soup.positions[v.at()]);
+            let middle = [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0);
+            let around = [-middle[1], middle[0], 0.0];
+            let [x, y] = axes(&mesh, &soup.positions, f);
+            let direction = direction(Complex64::new(dot(around, x), dot(around, y)));
+            let off = ((guide.rotation[f] * direction).powi(4).arg() / 4.0).to_degrees();
+            assert!(off.abs() < 3.0, "face {f:?} is off by {off} degrees");
+            assert!(guide.weight[f] > 0.5);
+        }
+    }
+    #[test]
+    fn aligned_creases_are_followed_and_bend_nothing() {
+        let soup = testkit::subdivide(&testkit::cube());
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let guide = |features: &EdgeSet| {
+            let sectors = Sectors::new(&mesh, &metric, features);
+            Guide::along_curvature(&sectors, &soup.positions, &metric, 1.0, 1.0).unwrap()
+        };
+        let creases = seamstress_mesh::features::creases(&mesh, &soup.positions, &metric, 1.0);
+        assert_eq!(creases.edges().len(), 24);
+        let aligned = guide(&creases);
+        assert!(aligned.weight.iter().all(|&weight| weight < 1e-12));
+        for f in mesh.faces() {
+            let off = f.halfedges().map(|h| {
+                let along = Complex64::from_polar(1.0, turning(&metric.angle, h));
+                ((aligned.rotation[f] * along).powi(4).arg() / 4.0).abs()
+            });
+            // Two of its sides are parallel to edges of the cube.
+            assert_eq!(off.iter().filter(|&&off| off < 1e-6).count(), 2);
+        }
+        let free = guide(&EdgeSet::new(&mesh, []));
+        assert!(free.weight.iter().any(|&weight| weight > 0.5));
+    }
+}
