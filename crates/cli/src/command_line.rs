@@ -115,7 +115,8 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 13] = [
+const RARE: [&str; 14] = [
+    "raw",
     "corner_angle",
     "cone_price",
     "angle",
