@@ -445,7 +445,7 @@ mod tests {
     fn unknown_and_impossible_options_are_named() {
         let unknown = serde_json::from_str::<MapOptions>(r#"{"cone_bais": 1}"#).unwrap_err();
         assert!(unknown.to_string().contains("cone_bais"), "{unknown}");
-        let cases: [(MapOptions, &str); 5] = [
+        let cases: [(MapOptions, &str); 6] = [
             (MapOptions { corner_angle: 0.0, ..Default::default() }, "corner_angle"),
             (MapOptions::default().cone_bias(-1.0), "cone_bias"),
             (MapOptions { align: Some(1.5), ..Default::default() }, "align"),
