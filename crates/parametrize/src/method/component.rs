@@ -7,8 +7,8 @@ use crate::progress::{Watch, unless_cancelled};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Metric};
 
-/// Maps one component along its features; where that fails, with nothing aligned, and then in a metric without thin
-/// triangles.
+/// Maps one component along its features and a guide; where that fails, or features are lost, without the guide, then with
+/// nothing aligned, and then in a metric without thin triangles.
 ///
 /// # Errors
 /// [`MethodError`] of the last trial.
@@ -27,6 +27,10 @@ pub(super) fn map_component(
     let mut domain = Domain::new(mesh, &positions, &metric, features, options);
     loop {
         match unless_cancelled(parametrize(domain.clone(), start, options, watch))? {
+            // Features come before directions.
+            Ok(map) if domain.guide.is_some() && map.released.len() > domain.released.len() => {
+                domain.guide = None;
+            }
             Ok(map) => return Ok(map),
             Err(error) => domain = domain.simpler().ok_or(error)?,
         }

@@ -97,9 +97,12 @@ impl<'m> Domain<'m> {
         corner_uvs(self.mesh(), self.surface, &layout.space, &layout.y)
     }
 
-    /// What to try where this domain has no map: the same with nothing aligned, then in metrics in which thin triangles
-    /// open up, more and more.
+    /// What to try where this domain has no map: the same without a guide, then with nothing aligned, then in metrics in
+    /// which thin triangles open up, more and more.
     pub(super) fn simpler(&self) -> Option<Self> {
+        if self.guide.is_some() {
+            return Some(Self { guide: None, ..self.clone() });
+        }
         if self.any_aligned() {
             let everywhere = VertexData::filled(self.mesh().n_vertices(), true);
             return Some(self.without_features_near(everywhere, 0));

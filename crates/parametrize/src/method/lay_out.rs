@@ -65,6 +65,8 @@ fn lay_out_cleaned(
     let layout = ladder::lay_out(sectors, metric, &cleaned.start, effort, watch);
     match unless_cancelled(layout)? {
         Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), watch)?)),
+        // As they were rounded along a guide, cones are far too many.
+        Ok(Err(defects)) if domain.guide.is_some() => Err(MethodError::Defective(defects)),
         Ok(Err(_)) | Err(_) => Ok(None),
     }
 }
