@@ -115,7 +115,8 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 14] = [
+const RARE: [&str; 15] = [
+    "uv_set",
     "raw",
     "corner_angle",
     "cone_price",
