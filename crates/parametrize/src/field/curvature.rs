@@ -29,7 +29,7 @@ pub(super) fn anisotropy(
     let n = mesh.n_vertices();
     let edge = |h: Halfedge| {
         let (a, b) = (positions[mesh.origin(h).at()], positions[mesh.tip(h).at()]);
-        [0, 1, 2].map(|k| (b[k] - a[k]) / metric.unit)
+        [0, 1, 2].map(|k| b[k] / metric.unit - a[k] / metric.unit)
     };
     let axes: FaceData<[[f64; 3]; 2]> = mesh.faces().map(|f| axes(mesh, positions, f)).collect();
     let normal = |f: Face| cross(axes[f][0], axes[f][1]);

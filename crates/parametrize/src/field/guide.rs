@@ -8,7 +8,7 @@ use crate::features::Sectors;
 use crate::quarter::{direction, rotation};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
-use seamstress_mesh::{Face, FaceData, Halfedge, Metric};
+use seamstress_mesh::{Face, FaceData, Metric};
 
 /// Difference of the principal curvatures, times the length of a cell, at which directions count half.
 const HALF_ANISOTROPY: f64 = 0.15;
@@ -82,8 +82,7 @@ fn smoothed(
 ) -> Result<FaceData<Complex64>, NotPositiveDefinite> {
     let slit = sectors.slit();
     let bare = rotations(slit, metric, &FaceData::filled(slit.n_faces(), Complex64::ONE));
-    let across: Vec<Complex64> =
-        slit.interior_edges().map(|h: Halfedge| rotation(-4.0 * bare[h])).collect();
+    let across: Vec<Complex64> = slit.interior_edges().map(|h| rotation(-4.0 * bare[h])).collect();
     let share = |f: usize| metric.area[Face(f as u32)] / (length * length);
     let mut matrix = FaceMatrix::<Complex64>::new(slit)?;
     matrix.factorize_near(
@@ -123,6 +122,7 @@ mod tests {
             assert!(guide.weight[f] > 0.5);
         }
     }
+
     #[test]
     fn aligned_creases_are_followed_and_bend_nothing() {
         let soup = testkit::subdivide(&testkit::cube());
