@@ -4,6 +4,7 @@
 mod common;
 
 use common::{real_indices, surface, unwatched};
+use seamstress_mesh::Complex64;
 use seamstress_mesh::features::sharp_edges;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{
