@@ -180,8 +180,13 @@ def test_interrupts_end_the_children(meshes: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "seamstress_mesh.batch", str(meshes), "-o", str(out), "--workers", "1"]
     environment = {**os.environ, kills.MARK: str(out)}
     batch = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment)
-    time.sleep(2.0)
-    assert sys.platform != "linux" or any("_command.py" in command for _, command in kills.processes(str(out)).values())
+    # As soon as the largest mesh, which is the first, is at work.
+    is_at_work = lambda: any("_command.py" in command for _, command in kills.processes(str(out)).values())
+    started = time.monotonic()
+    while sys.platform == "linux" and not is_at_work():
+        assert time.monotonic() - started < 60, "no child has started"
+        time.sleep(0.05)
+    time.sleep(0.2 if sys.platform == "linux" else 2.0)
     batch.send_signal(signal.SIGINT)
     _, said = batch.communicate(timeout=30)
     assert batch.returncode == 1 and "the same command goes on from here" in said

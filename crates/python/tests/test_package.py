@@ -35,8 +35,8 @@ def keywords(call: object) -> set[str]:
 def test_keywords_are_flags(command: str, call: object) -> None:
     of_surface = set(_options.SurfaceOptions.__annotations__)
     ours = keywords(call) - {"self", "timeout", "progress"} | of_surface
-    # The tolerance is that of a map that is given: of `integer_map_of`.
-    assert ours == flags(command) - {"tolerance"}
+    # The tolerance is that of a map that is given: of `integer_map_of`. Sets of UVs are those of GLB files.
+    assert ours == flags(command) - {"tolerance", "uv_set"}
 
 
 def test_keywords_of_maps_are_flags() -> None:
