@@ -179,9 +179,15 @@ def test_interrupts_end_the_children(meshes: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     command = [sys.executable, "-m", "seamstress_mesh.batch", str(meshes), "-o", str(out), "--workers", "1"]
     environment = {**os.environ, kills.MARK: str(out)}
+    # Where the tests themselves run in the background, interrupts are ignored, and children inherit that.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     batch = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment)
+    signal.signal(signal.SIGINT, before)
+
     # As soon as the largest mesh, which is the first, is at work.
-    is_at_work = lambda: any("_command.py" in command for _, command in kills.processes(str(out)).values())
+    def is_at_work() -> bool:
+        return any("_command.py" in command for _, command in kills.processes(str(out)).values())
+
     started = time.monotonic()
     while sys.platform == "linux" and not is_at_work():
         assert time.monotonic() - started < 60, "no child has started"
