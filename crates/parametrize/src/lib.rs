@@ -18,6 +18,7 @@
 )]
 
 pub mod consistency;
+mod cotangent;
 pub mod field;
 pub mod map;
 mod method;

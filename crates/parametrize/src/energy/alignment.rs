@@ -16,10 +16,10 @@ impl Alignment {
     /// That of a triangle, if it has any.
     #[inline]
     pub fn new(triangle: &Triangle, jacobian: &Jacobian) -> Option<Self> {
-        let weight = triangle.wanted.norm();
-        if weight == 0.0 {
+        if triangle.wanted == Complex64::ZERO {
             return None;
         }
+        let weight = triangle.wanted.norm();
         let Complex64 { re: c, im: s } =
             nearest_quarter(triangle.wanted / weight, jacobian.similar);
         Some(Self { forms: [[0.0, c, 0.0, s], [-s, 0.0, c, 0.0]], weight })

@@ -1,13 +1,11 @@
 //! Principal directions of a surface, at a scale.
 
 use super::convert::{axes, cross, dot};
+use crate::cotangent::edge_weight;
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
 use seamstress_mesh::{Face, FaceData, Halfedge, Metric, TriMesh};
-
-/// Cotangent weights of edges are kept in this range: needles would drown everything else.
-const WEIGHT_RANGE: (f64, f64) = (0.02, 20.0);
 
 /// Entries of a symmetric tensor of space, by their places.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -88,8 +86,7 @@ fn diffuse(
         matrix[pattern.diagonal()[v.at()] as usize] += area;
     }
     for h in mesh.edges() {
-        let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
-        let weight = time * (sum / 2.0).clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1);
+        let weight = time * edge_weight(mesh, &cotangent, h);
         let [a, b] = [mesh.origin(h), mesh.tip(h)];
         for v in [a, b] {
             matrix[pattern.diagonal()[v.at()] as usize] += weight;

@@ -1,6 +1,6 @@
 //! Local estimation: what turning an edge does, estimated on a small patch.
 
-use super::surrogate::edge_weight;
+use crate::cotangent::edge_weight;
 use crate::features::Sectors;
 use seamstress_linalg::dense::solve_spd;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, Vertex, VertexData};

@@ -1,9 +1,10 @@
 //! What a set of cones costs, without laying anything out.
 
+use crate::cotangent::edge_weight;
 use crate::features::Sectors;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
-use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_mesh::{Metric, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -39,8 +40,6 @@ pub struct Surrogate<'a> {
 /// sector.)
 pub struct Response(Vec<f32>);
 
-/// Cotangent weights of edges are kept in this range: needles would drown everything else.
-const WEIGHT_RANGE: (f64, f64) = (0.02, 20.0);
 /// Right-hand sides solved together.
 const BATCH: usize = 4;
 /// The diagonal of `L^-1 M L^-1` is a difference quotient of that of `(L + t M)^-1` with t this over the whole area: a
@@ -286,10 +285,4 @@ impl Pieces {
         let means = sums.iter().zip(&self.floating);
         means.map(|(sum, floating)| floating.map_or(0.0, |(_, area)| sum / area)).collect()
     }
-}
-
-/// Cotangent weight of an edge, kept within [`WEIGHT_RANGE`].
-pub(super) fn edge_weight(mesh: &TriMesh, cotangent: &HalfedgeData<f64>, h: Halfedge) -> f64 {
-    let sum = cotangent[h] + mesh.twin(h).map_or(0.0, |t| cotangent[t]);
-    (sum / 2.0).clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1)
 }
