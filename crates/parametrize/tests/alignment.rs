@@ -41,7 +41,7 @@ fn boundary(mesh: &TriMesh) -> Vec<[u32; 2]> {
 
 fn check(map: &(TriMesh, SeamlessMap), edges: &[[u32; 2]]) -> Result<Alignment, Vec<Violation>> {
     let tolerance = AlignmentTolerance::default();
-    Alignment::certify(&map.0, &map.1, edges, &tolerance).map_err(|violations| violations.0)
+    map.1.alignment(&map.0, edges, &tolerance).map_err(|violations| violations.0)
 }
 
 fn moved(soup: &TriangleSoup, how: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleSoup {
@@ -120,7 +120,7 @@ fn a_map_turned_by_a_hair_is_off_in_every_edge() {
     }
     assert_eq!(named, rim);
     let wide = AlignmentTolerance::axes(2e-8).unwrap();
-    let found = Alignment::certify(&map.0, &map.1, &rim, &wide).unwrap();
+    let found = map.1.alignment(&map.0, &rim, &wide).unwrap();
     assert!((found.axis_error / 1e-8 - 1.0).abs() < 1e-6);
     assert!(found.exact_sides < found.sides);
 }
@@ -168,7 +168,7 @@ fn a_sector_folded_to_nothing_is_refused() {
     });
     let map = planar(&squeezed);
     let loose = AlignmentTolerance::axes(1.0).unwrap();
-    let found = Alignment::certify(&map.0, &map.1, &[[0, 1], [0, 5]], &loose).unwrap_err().0;
+    let found = map.1.alignment(&map.0, &[[0, 1], [0, 5]], &loose).unwrap_err().0;
     let [Violation::SectorAngle { vertex: 0, between: [1, 5], quarters }] = found[..] else {
         panic!("{found:?}");
     };

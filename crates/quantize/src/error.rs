@@ -116,7 +116,9 @@ impl QuantizationFailure {
             Self::Blocked { face, reached } => {
                 Self::Blocked { face: piece.faces[face as usize].0, reached }
             }
-            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(piece)),
+            Self::Uncertified(violations) => Self::Uncertified(
+                violations.in_whole(|f| piece.faces[f as usize].0, |v| piece.vertices[Vertex(v)].0),
+            ),
             other => other,
         }
     }

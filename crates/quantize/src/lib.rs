@@ -17,7 +17,6 @@
 #![allow(unreachable_pub, reason = "modules are private; tests see some through `internals`")]
 #![cfg_attr(not(feature = "internals"), allow(dead_code))]
 
-mod area;
 mod base;
 mod certificate;
 mod connections;
@@ -43,7 +42,7 @@ mod space;
 mod stats;
 mod walk;
 
-pub use certificate::{IntegerCertificate, IntegerGridMap, IntegralTolerance};
+pub use certificate::IntegerGridMap;
 pub use error::{QuantizationFailure, QuantizeError, Refusal};
 pub use gauss::Overflow;
 pub use options::{GridSize, QuantizeOptions, RoundingMethod};

@@ -8,7 +8,7 @@ use crate::stats::QuantizationStats;
 use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Face, Metric, TriMesh};
-use seamstress_parametrize::map::{Alignment, AlignmentTolerance, SeamlessMap};
+use seamstress_parametrize::map::{AlignmentTolerance, SeamlessMap};
 use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
 
@@ -102,7 +102,7 @@ pub fn quantize_deciding(
         return Err(QuantizeError::BadSize);
     }
     let pairs = aligned.vertex_pairs(mesh);
-    Alignment::certify(mesh, map, &pairs, &AlignmentTolerance::of_seams(&options.given))
+    map.alignment(mesh, &pairs, &AlignmentTolerance::of_seams(&options.given))
         .map_err(QuantizeError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };

@@ -4,10 +4,11 @@ use seamstress_mesh::components::FailedComponent;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, TriMesh};
+use seamstress_parametrize::map::{IntegerCertificate, IntegralTolerance};
 use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, Violation, make_map};
 use seamstress_quantize::{
-    GridSize, IntegerCertificate, IntegerGridMap, IntegralTolerance, Quantization,
-    QuantizationFailure, QuantizeError, QuantizeOptions, RoundingMethod, quantize,
+    GridSize, IntegerGridMap, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions,
+    RoundingMethod, quantize,
 };
 use seamstress_testkit as testkit;
 use std::collections::HashMap;
@@ -230,7 +231,7 @@ fn checked(
     tolerance: IntegralTolerance,
 ) -> Result<IntegerCertificate, Vec<Violation>> {
     let map = SeamlessMap::certify(mesh, uvs, &Tolerance::new(1e-3, 1e-2).unwrap()).unwrap();
-    IntegerCertificate::check(mesh, &map, &[], tolerance).map_err(|violations| violations.0)
+    map.integers(mesh, &[], tolerance).map_err(|violations| violations.0)
 }
 
 #[test]

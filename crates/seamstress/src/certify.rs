@@ -6,10 +6,9 @@ use crate::features::FeatureReport;
 use crate::finding::Finding;
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
 use crate::surface::Surface;
-use seamstress_parametrize::map::Certificate;
+use seamstress_parametrize::map::{Certificate, IntegerCertificate, IntegralTolerance};
 use seamstress_parametrize::quality::{SingularValues, measure_all};
 use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
-use seamstress_quantize::{IntegerCertificate, IntegralTolerance};
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Surface::certify_with`].
@@ -220,14 +219,14 @@ impl Surface {
         verdict.seams = Some(SeamReport::new(map.seams()));
         let aligned = features.as_ref().map_or(Vec::new(), |features| features.edges().to_vec());
         if features.is_some() {
-            match Alignment::certify(self.mesh(), &map, &aligned, &axis_tolerance) {
+            match map.alignment(self.mesh(), &aligned, &axis_tolerance) {
                 Ok(alignment) => verdict.alignment = Some(alignment),
                 Err(violations) => verdict.alignment_violations = self.findings(&violations),
             }
             verdict.aligned = Some(verdict.alignment.is_some());
         }
         if options.integer {
-            match IntegerCertificate::check(self.mesh(), &map, &aligned, integral_tolerance) {
+            match map.integers(self.mesh(), &aligned, integral_tolerance) {
                 Ok(certificate) => verdict.integer_certificate = Some(certificate),
                 Err(violations) => verdict.integer_violations = self.findings(&violations),
             }

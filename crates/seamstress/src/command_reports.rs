@@ -8,8 +8,7 @@ use crate::inspection::{Inspection, SurfaceOptions, Weld};
 use crate::quads::{ExtractionOptions, QuadMeshReport};
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport, SurfaceReport, VERSION};
 use seamstress_parametrize::Alignment;
-use seamstress_parametrize::map::Certificate;
-use seamstress_quantize::IntegerCertificate;
+use seamstress_parametrize::map::{Certificate, IntegerCertificate};
 use serde::Serialize;
 
 /// What `check` reports.

@@ -250,7 +250,7 @@ impl AlignedFeatures {
         let gone: BTreeSet<[u32; 2]> = dropped.iter().map(|f| ordered(f.vertices)).collect();
         let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
         let kept: Vec<[u32; 2]> = asked.pairs.iter().copied().filter(is_kept).collect();
-        let alignment = Alignment::certify(mesh, map, &kept, tolerance)?;
+        let alignment = map.alignment(mesh, &kept, tolerance)?;
         let mut report = asked.report;
         report.kept = Some(kept.len());
         report.dropped = Some(dropped.to_vec());
@@ -268,7 +268,7 @@ impl AlignedFeatures {
         map: &SeamlessMap,
     ) -> Result<Self, Violations> {
         let tolerance = AlignmentTolerance::default();
-        self.report.alignment = Some(Alignment::certify(mesh, map, &self.kept, &tolerance)?);
+        self.report.alignment = Some(map.alignment(mesh, &self.kept, &tolerance)?);
         Ok(self)
     }
 

@@ -15,12 +15,12 @@ use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::features::EdgeSet;
-use seamstress_parametrize::map::Certificate;
+use seamstress_parametrize::map::{Certificate, IntegerCertificate};
 use seamstress_parametrize::{self as method, AlignmentTolerance, Tolerance};
 use seamstress_quads::GoesOn;
 use seamstress_quantize::{
-    Decisions, IntegerCertificate, Quantization, QuantizationFailure, QuantizationStats,
-    QuantizeError, QuantizeOptions, quantize_deciding,
+    Decisions, Quantization, QuantizationFailure, QuantizationStats, QuantizeError,
+    QuantizeOptions, quantize_deciding,
 };
 use serde::Serialize;
 

@@ -145,11 +145,11 @@ pub use surface::Surface;
 pub use seamstress_io::AtomicFile;
 pub use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind, Attributes};
 pub use seamstress_parametrize::MixedIntegerStats;
-pub use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
+pub use seamstress_parametrize::map::{Certificate, Cone, IntegerCertificate, SeamEdge};
 pub use seamstress_parametrize::quality::Measure;
 pub use seamstress_parametrize::{
     Alignment, ComponentStats, ConicStats, Objective, RelayoutStats, ReleasedFeature, Stretch,
 };
 pub use seamstress_quads::extract::SurfacePoint;
 pub use seamstress_quads::{IrregularVertex, quality::Orientation};
-pub use seamstress_quantize::{IntegerCertificate, QuantizationStats};
+pub use seamstress_quantize::QuantizationStats;

@@ -14,9 +14,11 @@ use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 #[cfg(feature = "io")]
 use crate::words::counted;
+use seamstress_certify::Quads;
 use seamstress_mesh::components::{Component, components};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Face, Halfedge};
+use seamstress_parametrize::map::IntegerCertificate;
 use seamstress_parametrize::progress::go_on;
 use seamstress_quads::extract::{Folds, QuadCone, Snapping, SurfacePoint};
 use seamstress_quads::quality::Orientation;
@@ -25,7 +27,7 @@ use seamstress_quads::{
     ManifoldError, ManifoldQuads, QuadConnectivity, QuadFaults, SmoothError, SmoothOptions,
     UntangleOptions, manifold_quads,
 };
-use seamstress_quantize::{IntegerCertificate, Quantization, QuantizationStats};
+use seamstress_quantize::{IntegerGridMap, Quantization, QuantizationStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
 #[cfg(feature = "io")]
@@ -339,6 +341,7 @@ impl Selection {
         let features = features.transpose().map_err(|v| surface.misaligned(&v))?;
         let kept = features.as_ref().map_or(&[][..], |features| &features.kept);
         let shaped = surface.shape(&mut extraction, &options.shape, kept, watcher)?;
+        surface.certify_quads(&extraction, Some(&solution.map))?;
         work.bring_back(&mut extraction)?;
         let empty = self.components_in_whole(&self.surface.components_without(&extraction.sources));
         self.bring_back(&mut extraction);
@@ -424,7 +427,11 @@ impl Surface {
             let (kept, feature_report) = asked.followed_by(&extraction);
             // What folds have left holes in is no surface to shape.
             let shaped = match connectivity.is_ok() && extraction.folds.is_none() {
-                true => Some(self.shape(&mut extraction, &options.shape, &kept, watcher)?),
+                true => {
+                    let shaped = self.shape(&mut extraction, &options.shape, &kept, watcher)?;
+                    self.certify_quads(&extraction, None)?;
+                    Some(shaped)
+                }
                 false => None,
             };
             let empty = self.components_without(&extraction.sources);
@@ -529,6 +536,35 @@ impl Surface {
         let orientation = Orientation::new(extraction.mesh.positions(), polygons, surface)
             .map_err(|cause| failure(&cause))?;
         Ok((untangled, orientation))
+    }
+
+    /// Certifies quads of this surface, and of an integer-grid map of it, by the checker alone.
+    fn certify_quads(
+        &self,
+        extraction: &Extraction,
+        map: Option<&IntegerGridMap>,
+    ) -> Result<(), Error> {
+        let sources: Vec<u32> = extraction.sources.iter().map(|point| point.face).collect();
+        let quads = Quads {
+            quads: extraction.mesh.quads(),
+            sources: &sources,
+            n_vertices: self.positions().len(),
+            faces: self.faces(),
+            is_trimmed: extraction.trimmed > 0,
+        };
+        let agrees = |map: &IntegerGridMap| {
+            let cones: Vec<i32> = map.seamless().cones().iter().map(|cone| cone.index).collect();
+            quads.agree_with(&cones, map.certificate().area)
+        };
+        let certified = quads.check().and_then(|_| match map.filter(|_| !quads.is_trimmed) {
+            Some(map) => agrees(map),
+            None => Ok(()),
+        });
+        certified.map_err(|violations| {
+            let text =
+                format!("quads were made, but they are not those of the surface: {violations}");
+            Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
+        })
     }
 
     /// Why there are no quads that are a manifold.

@@ -5,7 +5,7 @@ use super::log::StageLog;
 use super::{ComponentStats, MethodError};
 use crate::features::ReleasedFeature;
 use crate::layout::route::Route;
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use crate::map::{AlignmentTolerance, SeamlessMap, Tolerance, Violations};
 use crate::rounding::RoundingStats;
 use seamstress_mesh::features::EdgeSet;
 
@@ -58,7 +58,7 @@ pub(super) fn last_certified(
     let aligned = domain.features().vertex_pairs(mesh);
     let certify = |uvs: &Vec<[f64; 2]>| {
         let map = SeamlessMap::certify(mesh, uvs.clone(), tolerance)?;
-        Alignment::certify(mesh, &map, &aligned, &AlignmentTolerance::default())
+        map.alignment(mesh, &aligned, &AlignmentTolerance::default())
     };
     let mut failure = Violations(Vec::new());
     for uvs in candidates.into_iter().rev() {

@@ -71,7 +71,9 @@ impl MethodError {
                 flips: flips.iter().map(|f| piece.faces[f.at()]).collect(),
                 wrong_angles: wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
             }),
-            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(piece)),
+            Self::Uncertified(violations) => {
+                Self::Uncertified(violations.in_whole(|f| piece.faces[f as usize].0, whole))
+            }
             Self::Cones(PrescriptionError::NoTaker { vertex }) => {
                 Self::Cones(PrescriptionError::NoTaker { vertex: whole(vertex) })
             }

@@ -206,7 +206,7 @@ fn improve(
     let pairs = features.vertex_pairs(mesh);
     let certify = || {
         let better = SeamlessMap::certify(mesh, uvs, &options.tolerance)?;
-        Alignment::certify(mesh, &better, &pairs, &AlignmentTolerance::default())?;
+        better.alignment(mesh, &pairs, &AlignmentTolerance::default())?;
         Ok(better)
     };
     match certify() {

@@ -50,7 +50,7 @@ impl FeatureTally {
         let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
         let features = EdgeSet::new(mesh, kept);
         let pairs = features.vertex_pairs(mesh);
-        let alignment = Alignment::certify(mesh, &map, &pairs, &AlignmentTolerance::default())?;
+        let alignment = map.alignment(mesh, &pairs, &AlignmentTolerance::default())?;
         Ok(AlignedMap { map, features, alignment, released })
     }
 }

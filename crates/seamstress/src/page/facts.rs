@@ -9,8 +9,7 @@ use crate::quads::QuadMeshReport;
 use crate::report::{ConeReport, Distortion, SurfaceReport};
 use crate::words::{counted, rounded};
 use seamstress_parametrize::Alignment;
-use seamstress_parametrize::map::Certificate;
-use seamstress_quantize::IntegerCertificate;
+use seamstress_parametrize::map::{Certificate, IntegerCertificate};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,8 +1,9 @@
 //! How far a map may be from exactness, within ceilings above which a check would mean nothing.
 
+use std::fmt;
+
 /// A tolerance that is negative, not a number, or so large that the check would mean nothing.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("a tolerance of {given} {unit} for {what}: it must be from 0 to {largest}")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ToleranceError {
     /// What the tolerance is for.
@@ -16,11 +17,7 @@ pub struct ToleranceError {
 }
 
 impl ToleranceError {
-    /// The value if it is from 0 to the largest.
-    ///
-    /// # Errors
-    /// This one.
-    pub fn unless_within(
+    fn unless_within(
         given: f64,
         largest: f64,
         what: &'static str,
@@ -32,6 +29,15 @@ impl ToleranceError {
         }
     }
 }
+
+impl fmt::Display for ToleranceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, unit, given, largest } = self;
+        write!(f, "a tolerance of {given} {unit} for {what}: it must be from 0 to {largest}")
+    }
+}
+
+impl std::error::Error for ToleranceError {}
 
 /// How far rounding may take a seamless map from exactness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -154,9 +160,50 @@ impl Default for AlignmentTolerance {
     }
 }
 
+/// How far from an integer may be what has to be integral, grid units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IntegralTolerance(f64);
+
+impl IntegralTolerance {
+    /// Integers are integers, and the two images of an edge fit to the last bit.
+    pub const EXACT: Self = Self(0.0);
+    /// Largest distance that can be allowed: a hundredth of a cell, as much as a seam may be open by in
+    /// lengths of an edge. A number that has nothing to do with integers is that close to one in one of 50
+    /// cases, and no map is without a dozen of them.
+    pub const LARGEST: f64 = 0.01;
+
+    /// A tolerance for maps written with few digits.
+    ///
+    /// # Errors
+    /// A value below 0 or above [`IntegralTolerance::LARGEST`].
+    pub fn new(distance: f64) -> Result<Self, ToleranceError> {
+        ToleranceError::unless_within(distance, Self::LARGEST, "integers", "grid units").map(Self)
+    }
+
+    /// Grid units; 0 is [`IntegralTolerance::EXACT`].
+    pub fn distance(self) -> f64 {
+        self.0
+    }
+}
+
+/// Whether a figure is at most a limit; a figure that is not a number is not.
+pub(crate) fn within(figure: f64, limit: f64) -> bool {
+    figure <= limit
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn alignment_allows_what_seams_do() {
+        let of = |seam| AlignmentTolerance::of_seams(&Tolerance::seams(seam).unwrap()).axis();
+        assert_eq!(of(0.0), 1e-9);
+        assert_eq!(of(1e-3), 1e-3f64.to_degrees());
+        assert!(of(0.01) < AlignmentTolerance::LARGEST_AXIS);
+        assert_eq!(AlignmentTolerance::default().sector(), 1e-3);
+        assert_eq!(Tolerance::default().angle(), 1e-3);
+    }
 
     #[test]
     fn tolerances_have_a_ceiling() {
@@ -169,6 +216,11 @@ mod tests {
         assert_eq!(AlignmentTolerance::axes(1e-9), Ok(AlignmentTolerance::default()));
         for (axis, sector) in [(1.5, 1e-3), (90.0, 1e-3), (f64::NAN, 1e-3), (1e-9, 1.0)] {
             assert!(AlignmentTolerance::new(axis, sector).is_err(), "{axis} {sector}");
+        }
+        assert_eq!(IntegralTolerance::new(0.0), Ok(IntegralTolerance::EXACT));
+        assert_eq!(IntegralTolerance::new(0.01).map(IntegralTolerance::distance), Ok(0.01));
+        for distance in [-1e-9, 0.02, 0.5, f64::NAN] {
+            assert!(IntegralTolerance::new(distance).is_err(), "{distance}");
         }
         let text = Tolerance::seams(10.0).unwrap_err().to_string();
         assert_eq!(text, "a tolerance of 10 edge lengths for seams: it must be from 0 to 0.01");

@@ -1,0 +1,197 @@
+//! Sums of products of doubles without rounding, and the signs that follow from them.
+
+use crate::plane::{Arrow, Point, shifted};
+use std::cmp::Ordering;
+
+/// Exponent of two of the last bit of the smallest product of two doubles.
+const LAST_BIT: i32 = 2 * (f64::MIN_EXP - f64::MANTISSA_DIGITS as i32);
+/// Bits of a digit. Each is kept in twice as many, so that no carry is lost in 2^63 sums.
+const DIGIT: usize = u64::BITS as usize;
+/// Digits of all products of two doubles, and room for their sum.
+const DIGITS: usize = (2 * f64::MAX_EXP - LAST_BIT) as usize / DIGIT + 3;
+
+/// A sum of products of finite doubles, as a fixed-point number that holds every bit of any of them.
+pub(crate) struct ExactSum {
+    digits: [i128; DIGITS],
+}
+
+impl ExactSum {
+    pub(crate) fn new() -> Self {
+        Self { digits: [0; DIGITS] }
+    }
+
+    /// Adds `a b`.
+    pub(crate) fn add(&mut self, a: f64, b: f64) {
+        let ([a, a_exponent], [b, b_exponent]) = (parts(a), parts(b));
+        let product = i128::from(a) * i128::from(b);
+        let place = (a_exponent + b_exponent - i64::from(LAST_BIT)) as usize;
+        let (digit, shift) = (place / DIGIT, place % DIGIT);
+        let size = product.unsigned_abs();
+        for (k, half) in [size as u64, (size >> DIGIT) as u64].into_iter().enumerate() {
+            let shifted = u128::from(half) << shift;
+            self.digits[digit + k] += product.signum() * i128::from(shifted as u64);
+            self.digits[digit + k + 1] += product.signum() * (shifted >> DIGIT) as i128;
+        }
+    }
+
+    /// Its digits from the last to the first, each from 0 to 2^64, but for the sign of the first.
+    fn carried(mut self) -> [i128; DIGITS] {
+        for k in 1..DIGITS {
+            let carry = self.digits[k - 1] >> DIGIT;
+            self.digits[k - 1] -= carry << DIGIT;
+            self.digits[k] += carry;
+        }
+        self.digits
+    }
+
+    /// Its sign, as its order to zero.
+    pub(crate) fn sign(self) -> Ordering {
+        let digits = self.carried();
+        let is_zero = digits.iter().all(|&digit| digit == 0);
+        if is_zero { Ordering::Equal } else { digits[DIGITS - 1].cmp(&0).then(Ordering::Greater) }
+    }
+
+    /// A double next to it; itself if it is one.
+    pub(crate) fn value(self) -> f64 {
+        let digits = self.carried();
+        let is_negative = digits[DIGITS - 1] < 0;
+        // All digits of the negative number, from zero up.
+        let digits =
+            if is_negative { Self { digits: digits.map(|d| -d) }.carried() } else { digits };
+        let scaled =
+            |(k, &digit): (usize, &i128)| shifted(digit as f64, (DIGIT * k) as i32 + LAST_BIT);
+        let parts = digits.iter().enumerate().rev().filter(|(_, digit)| **digit != 0).map(scaled);
+        let size = parts.fold(0.0, |size, part| size + part);
+        if is_negative { -size } else { size }
+    }
+}
+
+/// A double as a whole number and an exponent of two.
+fn parts(x: f64) -> [i64; 2] {
+    let bits = x.to_bits();
+    let fraction_bits = f64::MANTISSA_DIGITS - 1;
+    let exponent = ((bits >> fraction_bits) & 0x7ff) as i64;
+    let fraction = (bits & ((1 << fraction_bits) - 1)) as i64;
+    let leading = i64::from(exponent > 0) << fraction_bits;
+    let size = fraction | leading;
+    let lowest = i64::from(LAST_BIT / 2);
+    [if x < 0.0 { -size } else { size }, lowest + exponent.max(1) - 1]
+}
+
+/// On which side of an arrow another one points: left is greater.
+///
+/// The sign of the cross product, by doubles where their rounding cannot change it, and else without rounding.
+pub(crate) fn side(of: Arrow, other: Arrow) -> Ordering {
+    let ([a, b], [c, d]) = (of, other);
+    let (left, right) = ((b[0] - a[0]) * (d[1] - c[1]), (b[1] - a[1]) * (d[0] - c[0]));
+    let (rounded, size) = (left - right, left.abs() + right.abs());
+    if size > SMALLEST && rounded.abs() > ROUNDING * size && size.is_finite() {
+        return if rounded > 0.0 { Ordering::Greater } else { Ordering::Less };
+    }
+    let mut sum = ExactSum::new();
+    for (x, y, sign) in [(b, d, 1.0), (b, c, -1.0), (a, d, -1.0), (a, c, 1.0)] {
+        sum.add(sign * x[0], y[1]);
+        sum.add(-sign * x[1], y[0]);
+    }
+    sum.sign()
+}
+
+/// More than the rounding of a cross product, relative to the sum of its two terms: `3 ε + 16 ε²` with ε = 2^-53
+/// (Shewchuk 1997).
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+/// Above this size of the terms nothing that underflows counts.
+const SMALLEST: f64 = 1e-280;
+
+/// The area of triangles of the plane, counter-clockwise positive, without rounding but of the result.
+pub(crate) fn area(triangles: impl Iterator<Item = [Point; 3]>) -> f64 {
+    let mut doubled = ExactSum::new();
+    for [a, b, c] in triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            doubled.add(from[0], to[1]);
+            doubled.add(-from[1], to[0]);
+        }
+    }
+    0.5 * doubled.value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum(terms: &[[f64; 2]]) -> ExactSum {
+        let mut sum = ExactSum::new();
+        terms.iter().for_each(|&[a, b]| sum.add(a, b));
+        sum
+    }
+
+    #[test]
+    fn sums_have_exact_signs() {
+        let (tiny, huge) = (f64::from_bits(1), f64::MAX);
+        let cases: [(&[[f64; 2]], Ordering); 9] = [
+            (&[], Ordering::Equal),
+            (&[[tiny, tiny]], Ordering::Greater),
+            (&[[tiny, -tiny]], Ordering::Less),
+            (&[[huge, huge], [-huge, huge]], Ordering::Equal),
+            (&[[huge, huge], [tiny, tiny], [huge, -huge]], Ordering::Greater),
+            (&[[huge, huge], [tiny, -tiny], [huge, -huge]], Ordering::Less),
+            (&[[huge, -huge], [tiny, tiny]], Ordering::Less),
+            (&[[1e16, 1.0], [1.0, 1.0], [-1e16, 1.0], [-1.0, 1.0]], Ordering::Equal),
+            (&[[-0.0, 3.0], [0.0, -3.0]], Ordering::Equal),
+        ];
+        for (terms, sign) in cases {
+            assert_eq!(sum(terms).sign(), sign, "{terms:?}");
+        }
+    }
+
+    #[test]
+    fn sums_of_doubles_are_themselves() {
+        for x in
+            [0.0, 1.0, -1.0, 0.1, -1e300, 3e-200, 9_007_199_254_740_993.0, 1e-320, 2f64.powi(75)]
+        {
+            assert_eq!(sum(&[[x, 1.0]]).value(), x);
+            assert_eq!(sum(&[[x, 1.0], [1e9, 1e9], [-1.0, 1e18]]).value(), x);
+            assert_eq!(sum(&[[x, 0.5], [0.5, x]]).value(), x);
+        }
+        let mut many = ExactSum::new();
+        (0..1000).for_each(|_| many.add(-1e308, 1e308));
+        (0..1000).for_each(|_| many.add(1e308, 1e308));
+        many.add(0.1, 0.1);
+        assert_eq!(many.value(), 0.1 * 0.1);
+    }
+
+    #[test]
+    fn sides_are_decided_to_the_last_bit() {
+        let diagonal = [[0.1, 0.1], [0.7, 0.7]];
+        let with = |y: f64| side(diagonal, [[0.0, 0.0], [0.3, y]]);
+        assert_eq!(with(0.3), Ordering::Equal);
+        assert_eq!(with(0.3f64.next_up()), Ordering::Greater);
+        assert_eq!(with(0.3f64.next_down()), Ordering::Less);
+        // Less than any difference of doubles would say.
+        let flat = [[0.0, 0.0], [1.0, 0.0]];
+        assert_eq!(side(flat, [[5.0, 1e-320], [6.0, 0.0]]), Ordering::Less);
+        assert_eq!(side([[0.0; 2], [1.0; 2]], [[1.0, 1e-30], [2.0, 1.0]]), Ordering::Less);
+        assert_eq!(side([[0.0; 2], [1.0; 2]], [[1.0, -1e-30], [2.0, 1.0]]), Ordering::Greater);
+        for scale in [5e-324, 1e-200, 1e-140, 1.0, 1e140, 1e300] {
+            let arrow = |x: f64, y: f64| [[0.0; 2], [x * scale, y * scale]];
+            assert_eq!(side(arrow(4.0, 2.0), arrow(2.0, 1.0)), Ordering::Equal, "{scale}");
+            assert_eq!(side(arrow(4.0, 2.0), arrow(3.0, 2.0)), Ordering::Greater, "{scale}");
+            assert_eq!(side(arrow(4.0, 2.0), arrow(3.0, 1.0)), Ordering::Less, "{scale}");
+        }
+    }
+
+    /// Triangles around the point `(x, y)` over the square from 0 to `n`.
+    fn fan(n: f64, x: f64, y: f64) -> [[Point; 3]; 4] {
+        let corners = [[0.0, 0.0], [n, 0.0], [n, n], [0.0, n]];
+        [0, 1, 2, 3].map(|k| [[x, y], corners[k], corners[(k + 1) % 4]])
+    }
+
+    #[test]
+    fn whole_cells_add_up_to_whole_numbers() {
+        // One square far from the origin of many triangles, and many of few.
+        let fans = (1..200).flat_map(|k| fan(3.0, 0.37 * f64::from(k), 1.0 / f64::from(k)));
+        assert_eq!(area(fans), 199.0 * 9.0);
+        let [first, ..] = fan(1.0, 0.5, 0.3);
+        assert_eq!(area([first].into_iter()), 0.15);
+        assert_eq!(area([first, [first[0], first[2], first[1]]].into_iter()), 0.0);
+    }
+}
