@@ -1,6 +1,8 @@
 //! Results that are good by construction: squares of surfaces of cubes, each laid out as a square of the plane.
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "helpers of tests")]
 
+pub mod mutations;
+
 use seamstress_certify::{
     AlignmentTolerance, IntegralTolerance, Map, Quads, Tolerance, Violation, Violations,
     compare_source,
