@@ -5,12 +5,14 @@
 //! * [`TriMesh`]: half-edge connectivity of an oriented manifold, no geometry.
 //! * [`Metric`]: edge lengths and what follows from them: angles, areas, flat corners, curvature.
 //! * [`features`]: edges that lines of a map should follow, and the curves they form.
+//! * [`coarse`]: a coarser mesh of nearly the same surface.
 //! * [`components`]: the connected pieces of a soup, each a mesh of its own.
 //! * [`attributes`]: what a mesh carries: values of vertices, corners and faces.
 //!
 //! Nothing here reads files, solves systems or prints.
 
 pub mod attributes;
+pub mod coarse;
 pub mod components;
 pub mod features;
 mod flat;
