@@ -4,7 +4,7 @@
 //   node build.mjs --check    fails if the bundles that are committed are not what the sources make
 import { build } from 'esbuild';
 import { createHash } from 'node:crypto';
-import { mkdir, readFile, writeFile } from 'node:fs/promises';
+import { mkdir, readdir, readFile, writeFile } from 'node:fs/promises';
 import { dirname } from 'node:path';
 
 const REPORT = '../crates/seamstress/src/page/assets';
@@ -22,6 +22,7 @@ async function words() {
         quads: size('quads'),
         edge_length: size('edge-length'),
         features: map.features,
+        align: map.align,
         smooth: shape.smooth,
         cone_bias: map.cone_bias,
     };
@@ -51,7 +52,11 @@ const [report, style, app, worker, offline] = await Promise.all([
     bundle('src/worker.ts'),
     readFile('src/offline.js', 'utf8'),
 ]);
-const version = createHash('sha256').update(app + worker + style).digest('hex').slice(0, 12);
+/** The method, if `.ci/wasm` has built it: a new one is another version of the app. */
+const method = await Promise.all((await readdir(`${DIST}/pkg`).catch(() => [])).sort().map((name) => readFile(`${DIST}/pkg/${name}`)));
+const hash = createHash('sha256');
+[page, app, worker, style, ...method].forEach((content) => { hash.update(content); });
+const version = hash.digest('hex').slice(0, 12);
 const embedded = {
     [`${REPORT}/report.js`]: report,
     [`${REPORT}/style.css`]: style,

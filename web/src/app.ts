@@ -1,15 +1,22 @@
 // The app: a mesh in, quads or a map out, made by a worker of the page or by the program that serves it.
 import { download, h } from './dom';
-import { Refusal, ServerEngine, WorkerEngine, type Engine, type MeshFile, type Outcome, type Progress, type Task } from './engine';
+import { Refusal, ServerEngine, STOPPED, WorkerEngine, type Engine, type MeshFile, type Outcome, type Task } from './engine';
 import { Form } from './form';
-import { glb } from './glb';
 import { makeModel } from './model';
 import { Panel } from './panel';
+import { Running } from './running';
 import { SAMPLES } from './samples';
+import { polygonCount } from './scene';
 import { heading, sections } from './sections';
+import { suitable } from './settings';
 
+/** Triangles of a preview, and of meshes that get one: it takes a second, and what it shows takes several. */
+const [COARSE, LARGE] = [4_000, 12_000];
+const ENDINGS = ['obj', 'off', 'ply', 'stl', 'glb', 'gltf'];
+
+const here = (name: string): string => new URL(name, document.baseURI).href;
 const isServed = document.documentElement.dataset.engine === 'server';
-const engine: Engine = isServed ? new ServerEngine() : new WorkerEngine(new URL('worker.js', document.baseURI).href);
+const engine: Engine = isServed ? new ServerEngine() : new WorkerEngine(here('worker.js'), here('pkg/seamstress_wasm_bg.wasm'));
 /** Larger files are refused: they would not fit into memory. */
 const LARGEST = (isServed ? 1000 : 200) * 1e6;
 
@@ -17,24 +24,29 @@ const stage = h('div', { class: 'place-of-result' });
 const side = h('div', { class: 'about' });
 const status = h('div', { class: 'status', role: 'status' });
 const form = new Form((task) => { void make(task); }, () => { void showMesh(); });
-const input = h('input', { type: 'file', accept: '.obj,.off,.ply,.stl,.gz', 'aria-label': 'A mesh', hidden: true, onchange: () => { void take(input.files?.[0]); } });
+const input = h('input', { type: 'file', accept: [...ENDINGS, 'gz'].map((ending) => `.${ending}`).join(), 'aria-label': 'A mesh', hidden: true, onchange: () => { void take(input.files?.[0]); } });
+/** Not announced as the status is, since it changes all the time. */
+const work = h('div', {});
 let file: MeshFile | undefined;
 let running: AbortController | undefined;
 let shown: Panel | undefined;
+/** Triangles of the mesh, as far as known. */
+let triangles = 0;
 
 function welcome(): HTMLElement {
-    const samples = SAMPLES.map(({ name, text, make: makeSample }) => h('button', { type: 'button', class: 'sample', onclick: () => { open(makeSample()); } }, h('b', {}, name), text));
+    const samples = SAMPLES.map(({ name, text, next, make: makeSample }) => h('button', { type: 'button', class: 'sample', onclick: () => { open(makeSample(), next); } }, h('b', {}, name), text));
     const where = isServed ? 'The program on this machine does the work.' : 'This page does the work: nothing is uploaded.';
     return h('div', { class: 'drop' },
         h('h2', { class: 'call' }, 'Drop a mesh here'),
-        h('p', {}, 'OBJ, OFF, PLY or STL, also compressed with gzip. ', where),
+        h('p', {}, 'OBJ, OFF, PLY, STL or glTF, also compressed with gzip. ', where),
         h('p', {}, h('button', { type: 'button', class: 'button primary', onclick: () => { input.click(); } }, 'Choose a file')),
         h('p', { class: 'meaning' }, 'Or try a sample:'),
         h('div', { class: 'samples' }, ...samples));
 }
 
-function say(...parts: readonly (Node | string)[]): void {
+function say(...parts: readonly Node[]): void {
     status.replaceChildren(...parts);
+    if (parts.length > 0) status.scrollIntoView({ block: 'nearest' });
 }
 
 function fail(error: unknown): void {
@@ -51,11 +63,12 @@ async function take(given: File | undefined): Promise<void> {
     open({ name: given.name, content: new Uint8Array(await given.arrayBuffer()) });
 }
 
-/** Takes a mesh, and shows it. */
-function open(mesh: MeshFile): void {
+/** Takes a mesh, and shows it with what to try next. */
+function open(mesh: MeshFile, next?: string): void {
     file = mesh;
     form.picked = [];
-    void make({ surface: { repair: false }, make: { check: ['auto'] } });
+    triangles = 0;
+    void make({ surface: { repair: false }, make: { check: ['auto'] } }, next);
 }
 
 /** Shows the mesh, to click on edges. */
@@ -73,61 +86,78 @@ function pickEdge([a, b]: readonly [number, number]): void {
     say(h('p', { class: 'meaning' }, form.picked.length === 1 ? '1 edge is picked.' : `${form.picked.length} edges are picked.`));
 }
 
-async function make(task: Task): Promise<void> {
-    if (!file) return;
+async function make(task: Task, next?: string): Promise<void> {
+    const mesh = file;
+    if (!mesh) return;
     running?.abort();
     const controller = running = new AbortController();
+    const { signal } = controller;
     form.enabled = false;
-    const cancel = h('button', { type: 'button', class: 'button cancel', onclick: () => { controller.abort(); } }, 'Cancel');
-    const [bar, words] = [h('progress', { max: 1, value: 0, 'aria-label': 'Share of the stage' }), h('span', {}, 'reading')];
-    say(h('div', { class: 'running' }, words, bar, cancel));
+    say();
     const start = performance.now();
-    const show = ({ stage: name, component, n_components, fraction }: Progress): void => {
-        const part = n_components > 1 ? `, part ${component + 1} of ${n_components}` : '';
-        words.textContent = `${name}${part} · ${((performance.now() - start) / 1000).toFixed(1)} s`;
-        bar.value = fraction;
+    const run = async (what: Task, title: string): Promise<Outcome> => {
+        const shows = new Running(what, title, () => { controller.abort(); });
+        work.replaceChildren(shows.element);
+        work.scrollIntoView({ block: 'nearest' });
+        return engine.run(what, mesh, (progress) => { shows.show(progress); }, signal).finally(() => { shows.end(); });
     };
     try {
-        const outcome = await engine.run(task, file, show, controller.signal);
-        if (controller === running) showOutcome(outcome, (performance.now() - start) / 1000);
+        const isCheck = 'check' in task.make;
+        if (!isCheck && triangles > LARGE) {
+            // What a coarse mesh cannot show, the mesh itself may.
+            const preview = await run({ ...task, coarse: COARSE }, 'Preview').catch(() => undefined);
+            if (signal.aborted) throw new Refusal(STOPPED);
+            if (preview) showPreview(preview);
+        }
+        const outcome = await run(task, isCheck ? 'Reading' : 'Working');
+        if (controller === running) showOutcome(outcome, (performance.now() - start) / 1000, next);
     } catch (error) {
         if (controller === running) fail(error);
     } finally {
         if (controller === running) {
             running = undefined;
+            work.replaceChildren();
             form.enabled = true;
         }
     }
 }
 
-function showOutcome(outcome: Outcome, seconds: number): void {
+/** Draws a result, seen from where the one before was if it is of the same mesh. */
+function draw({ result, scene }: Outcome, pick?: (side: readonly [number, number]) => void): Panel {
+    const model = makeModel(scene, result);
+    const pose = shown?.model.result.facts.name === result.facts.name ? { pose: shown.settings.pose } : {};
+    const panel = new Panel(model, { ...suitable(model), ...pose }, pick ? { side: pick } : {});
+    shown?.end();
+    shown = panel;
+    stage.replaceChildren(panel.element);
+    panel.start();
+    window.panels = [panel];
+    return panel;
+}
+
+function showPreview(outcome: Outcome): void {
+    draw(outcome).reveal();
+    side.replaceChildren(heading(outcome.result, 'Preview'), h('p', { class: 'meaning' }, 'Made of a coarser mesh, to show what to expect. The result follows.'));
+}
+
+function showOutcome(outcome: Outcome, seconds: number, next?: string): void {
     const { result, scene } = outcome;
     const isMesh = scene.uvs === undefined && scene.sides === 3;
+    if (isMesh) triangles = polygonCount(scene);
     // Vertices that were merged or repaired are not those of the file.
     const { repairs, welded_vertices } = (result.report.input ?? result.report) as { repairs?: unknown[]; welded_vertices?: number };
     const isAsInFile = repairs?.length === 0 && welded_vertices === 0;
-    const panel = new Panel(makeModel(scene, result), undefined, isMesh && isAsInFile ? { side: pickEdge } : {});
-    shown = panel;
-    const base = result.facts.name.replace(/\.(gz|obj|off|ply|stl)$/i, '').replace(/\.(obj|off|ply|stl)$/i, '');
-    const save = (ending: string, type: string, content: () => Promise<Uint8Array> | Uint8Array): HTMLElement =>
+    const panel = draw(outcome, isMesh && isAsInFile ? pickEdge : undefined);
+    const base = result.facts.name.replace(/\.gz$/i, '').replace(new RegExp(`\\.(${ENDINGS.join('|')})$`, 'i'), '');
+    const save = (ending: string, name = ending): HTMLElement =>
         h('button', { type: 'button', class: 'button', onclick: () => {
-            Promise.resolve(content()).then((bytes) => { download(`${base}${ending}`, bytes as BlobPart, type); }, fail);
+            outcome.file(name).then((bytes) => { download(`${base}${ending}`, bytes as BlobPart, 'application/octet-stream'); }, fail);
         } }, ending.replace(/^.*\./, '').toUpperCase());
-    const isQuads = scene.sides === 4;
-    const kind = isQuads ? '_quads' : '_map';
-    const isMade = isQuads || scene.uvs !== undefined;
-    const text = (name: string): HTMLElement => save(name, 'text/plain', () => outcome.file(name));
-    const saves = [
-        ...(isMade ? [text(`${kind}.obj`)] : []),
-        ...(isQuads ? [text(`${kind}.ply`)] : []),
-        ...(isMade ? [save(`${kind}.glb`, 'model/gltf-binary', () => glb(scene))] : []),
-        save('.html', 'text/html', () => outcome.file('page.html')),
-    ];
-    stage.replaceChildren(panel.element);
+    const [kind, formats] = scene.sides === 4 ? ['quads', ['obj', 'ply', 'glb']] : ['map', isMesh ? [] : ['obj', 'glb']];
+    const saves = [...formats.map((format) => save(`_${kind}.${format}`)), save('.html', 'page.html')];
     side.replaceChildren(heading(result), h('p', { class: 'saves' }, 'Save as ', ...saves), ...sections(result, (vertices, faces) => { panel.goTo(vertices, faces); }));
-    panel.start();
-    window.panels = [panel];
-    say(h('p', { class: 'meaning' }, `Done in ${seconds.toFixed(1)} s.`));
+    say(...[`Done in ${seconds.toFixed(1)} s.`, ...(next ? [next] : [])].map((text) => h('p', { class: 'meaning' }, text)));
+    panel.reveal();
 }
 
 addEventListener('dragover', (event) => {
@@ -141,13 +171,16 @@ addEventListener('drop', (event) => {
     void take(event.dataTransfer?.files[0]);
 });
 
+// Who leaves the page wants no result.
+addEventListener('pagehide', () => { running?.abort(); });
+
 form.enabled = false;
 stage.append(welcome());
 document.body.append(h('main', { class: 'report app' },
     stage,
     h('aside', { tabindex: 0, 'aria-label': 'What to make, and the result' },
         h('div', { class: 'brand' }, h('h1', { class: 'name' }, 'Seamstress'), h('button', { type: 'button', class: 'button', onclick: () => { input.click(); } }, 'Open a mesh'), input),
-        form.element, status, side)));
+        work, status, form.element, side)));
 
 if (isServed) {
     // The program ends when no page asks it any more.

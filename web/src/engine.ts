@@ -4,6 +4,8 @@ import { unpackScene, type Scene } from './scene';
 
 /** Something to make of a mesh, as `task.rs` reads it. */
 export interface Task {
+    /** For a preview: of a coarser mesh, of about so many triangles. */
+    readonly coarse?: number;
     readonly surface: { readonly repair: boolean };
     readonly make: Readonly<Record<string, unknown>>;
 }
@@ -52,7 +54,7 @@ function refusal(json: string): Refusal {
 
 /** What a worker is asked, and answers. */
 export type Request =
-    | { readonly kind: 'run'; readonly task: string; readonly name: string; readonly content: Uint8Array }
+    | { readonly kind: 'run'; readonly module: WebAssembly.Module; readonly task: string; readonly name: string; readonly content: Uint8Array }
     | { readonly kind: 'file'; readonly name: string };
 export type Answer =
     | ({ readonly kind: 'progress' } & Progress)
@@ -61,15 +63,25 @@ export type Answer =
     | { readonly kind: 'refused'; readonly error: string }
     | { readonly kind: 'broken'; readonly text: string };
 
-/** Works in this page, with WebAssembly. */
+/** Works in this page, with WebAssembly: every task has a worker of its own, which also writes the files of its result. */
 export class WorkerEngine implements Engine {
-    constructor(private readonly address: string) {}
+    /** Compiled once, for all workers. */
+    private module: Promise<WebAssembly.Module> | undefined;
+    /** The worker of the last result. */
+    private last: Worker | undefined;
 
-    run(task: Task, { name, content }: MeshFile, progress: (progress: Progress) => void, signal: AbortSignal): Promise<Outcome> {
-        const worker = new Worker(this.address, { type: 'module' });
+    constructor(private readonly worker: string, private readonly method: string) {}
+
+    async run(task: Task, { name, content }: MeshFile, progress: (progress: Progress) => void, signal: AbortSignal): Promise<Outcome> {
+        this.module ??= load(this.method);
+        const module = await this.module.catch((error: unknown) => {
+            this.module = undefined;
+            throw new Refusal('The method could not be loaded from where this page is.', String(error));
+        });
+        if (signal.aborted) throw new Refusal(STOPPED);
+        const worker = new Worker(this.worker, { type: 'module' });
         const ask = (request: Request): Promise<Answer> => new Promise((resolve, reject) => {
-            const stop = (): void => { worker.terminate(); reject(new Refusal(STOPPED)); };
-            signal.addEventListener('abort', stop, { once: true });
+            signal.addEventListener('abort', () => { reject(new Refusal(STOPPED)); }, { once: true });
             worker.onerror = (event) => { event.preventDefault(); reject(new Refusal(BROKEN)); };
             worker.onmessage = ({ data }: MessageEvent<Answer>) => {
                 if (data.kind === 'progress') progress(data);
@@ -83,18 +95,28 @@ export class WorkerEngine implements Engine {
             const answer = await ask({ kind: 'file', name });
             return answer.kind === 'file' ? answer.content : new Uint8Array();
         };
-        return ask({ kind: 'run', task: JSON.stringify(task), name, content }).then((answer) => {
+        try {
+            const answer = await ask({ kind: 'run', module, task: JSON.stringify(task), name, content });
             if (answer.kind !== 'done') throw new Refusal(BROKEN);
+            this.last?.terminate();
+            this.last = worker;
             return { result: JSON.parse(answer.facts) as Result, scene: unpackScene(answer.scene), file };
-        });
+        } catch (error) {
+            worker.terminate();
+            throw error;
+        }
     }
+}
+
+/** Not as a stream, which would need a host that names the type of the file. */
+async function load(address: string): Promise<WebAssembly.Module> {
+    const response = await fetch(address);
+    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+    return WebAssembly.compile(await response.arrayBuffer());
 }
 
 /** A browser gives a page 4 GB at most, and some much less. */
 const BROKEN = 'The work broke off in this browser, most likely for want of memory: try a smaller mesh, or the program `seamstress app`.';
-
-/** How often the program is asked how far it is, milliseconds. */
-const EVERY = 200;
 
 interface State {
     readonly state: 'running' | 'done' | 'failed';
@@ -114,15 +136,16 @@ export class ServerEngine implements Engine {
     private async work(task: Task, { name, content }: MeshFile, progress: (progress: Progress) => void, signal: AbortSignal): Promise<Outcome> {
         const query = new URLSearchParams({ name, task: JSON.stringify(task) });
         const job = await (await request(`jobs?${query.toString()}`, { method: 'POST', body: content as BodyInit })).text();
-        const stop = (): void => { void request(`jobs/${job}`, { method: 'DELETE' }).catch(() => undefined); };
+        // A page that is closed can still say so.
+        const stop = (): void => { void request(`jobs/${job}`, { method: 'DELETE', keepalive: true }).catch(() => undefined); };
         if (signal.aborted) stop();
         signal.addEventListener('abort', stop, { once: true });
         for (;;) {
             const state = await (await request(`jobs/${job}`, { signal })).json() as State;
             if (state.error) throw new Refusal(state.error.message, state.error.hint);
             if (state.state === 'done') break;
+            // The program waits a little before it answers: timers of pages that are not seen may stand still.
             if (state.progress) progress(state.progress);
-            await new Promise((resolve) => setTimeout(resolve, EVERY));
         }
         const bytes = async (path: string): Promise<Uint8Array> => new Uint8Array(await (await request(path)).arrayBuffer());
         const result = await (await request(`jobs/${job}/facts`)).json() as Result;

@@ -26,6 +26,7 @@ export class Form {
     private readonly size = h('input', { type: 'number', min: 0, step: 'any', value: 1500, 'aria-label': 'Number of quads, or edge length' });
     private readonly features = h('select', {}, ...FEATURES.map(([value, name]) => h('option', { value }, name)));
     private readonly angle = h('input', { type: 'number', min: 1, max: 180, value: 40, 'aria-label': 'Angle in degrees' });
+    private readonly align = h('input', { type: 'number', min: 0, max: 1, step: 0.1, placeholder: 'usual' });
     private readonly smooth = h('input', { type: 'number', min: 0, max: 100, value: 0 });
     private readonly bias = h('input', { type: 'number', min: 0, step: 'any', placeholder: 'usual' });
     private readonly repair = h('input', { type: 'checkbox' });
@@ -52,8 +53,8 @@ export class Form {
     task(): Task {
         const surface = { repair: this.repair.checked };
         const features = this.sources();
-        const bias = this.bias.value === '' ? {} : { cone_bias: Number(this.bias.value) };
-        const map = { features, ...bias };
+        const given = (name: string, { value }: HTMLInputElement): Record<string, number> => value === '' ? {} : { [name]: Number(value) };
+        const map = { features, ...given('align', this.align), ...given('cone_bias', this.bias) };
         switch (this.kind) {
             case 'check': return { surface, make: { check: features } };
             case 'map': return { surface, make: { map } };
@@ -88,6 +89,7 @@ export class Form {
         const help = this.isPicking ? 'Click on edges of the mesh; a second click takes one back' : helpOf('features');
         fields.push(h('div', { class: 'field' }, h('label', { for: 'features' }, 'Features'), h('span', { class: 'pair' }, this.features, ...angle), h('span', { class: 'meaning' }, help)));
         this.features.id = 'features';
+        if (this.kind !== 'check') fields.push(labelled('Direction', 'align', this.align));
         fields.push(labelled('Repair', 'repair', this.repair));
         const more: HTMLElement[] = [];
         if (this.kind === 'quads') more.push(labelled('Rounds of smoothing', 'smooth', this.smooth));

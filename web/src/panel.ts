@@ -61,6 +61,11 @@ export class Panel {
         this.apply();
     }
 
+    /** Draws no more. */
+    end(): void {
+        this.views.forEach((view) => { view.end(); });
+    }
+
     /** Changes some settings. */
     set(changes: Partial<Settings>, isOurs = true): void {
         this.settings = { ...this.settings, ...changes };
@@ -98,6 +103,12 @@ export class Panel {
         if (faces.length > 0) this.pick(faces[0]);
         if (this.settings.layout === 'map') this.set({ layout: 'both' });
         this.views[0]?.canvas.focus({ preventScroll: true });
+        this.reveal();
+    }
+
+    /** Scrolls to the drawing where it is out of sight. */
+    reveal(): void {
+        this.stage.scrollIntoView({ block: 'nearest' });
     }
 
     /** Milliseconds that drawing takes, the mean of some frames. */

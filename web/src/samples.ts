@@ -99,11 +99,13 @@ function step(): MeshFile {
 export interface Sample {
     readonly name: string;
     readonly text: string;
+    /** What to try with it. */
+    readonly next: string;
     readonly make: () => MeshFile;
 }
 
 export const SAMPLES: readonly Sample[] = [
-    { name: 'Step', text: 'a block whose sharp edges the quads follow', make: step },
-    { name: 'Knot', text: 'a smooth tube, closed: cones where it bends', make: knot },
-    { name: 'Bowl', text: 'open above: the quads end at its rim', make: bowl },
+    { name: 'Step', text: 'a block whose sharp edges the quads follow', next: 'Its creases and corners were found by their shape. “Make it” lays quads along them.', make: step },
+    { name: 'Knot', text: 'a smooth tube, closed: cones where it bends', next: 'Make a seamless map, and show “Tau” to see how little it is stretched; then quads with direction 0 and 1.', make: knot },
+    { name: 'Bowl', text: 'open above: the quads end at its rim', next: 'The quads follow the rim. With “None” for features they need not, and those that the rim would cut are left out.', make: bowl },
 ];

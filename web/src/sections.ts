@@ -13,10 +13,10 @@ function section(title: string, ...children: readonly (Node | string)[]): HTMLEl
 }
 
 /** The result in one sentence, with what it is of. */
-export function heading({ facts }: Result): HTMLElement {
+export function heading({ facts }: Result, kind = facts.kind): HTMLElement {
     const isGood = facts.claims.every(({ passed }) => passed);
     return h('header', { class: 'heading' },
-        h('p', { class: 'kind' }, facts.kind),
+        h('p', { class: 'kind' }, kind),
         h('h1', {}, facts.name),
         h('p', { class: 'headline' }, h('span', { class: isGood ? 'mark good' : 'mark bad', 'aria-hidden': 'true' }, isGood ? '✓' : '✕'), facts.headline));
 }

@@ -37,6 +37,8 @@ const LINES: readonly { name: MarkName; width: number; tint: Colour }[] = [
     { name: 'features', width: 2.4, tint: [16, 18, 24] },
     { name: 'dropped', width: 2.8, tint: [213, 64, 0] },
 ];
+/** Features that are being picked stand out from edges. */
+const CHOSEN = { width: 3.6, tint: [0, 140, 125] as Colour };
 const ACCENT = new Vec3(0.09, 0.62, 0.56);
 const PATTERNS = { none: 0, checks: 1, grid: 2 };
 /** Pixels that a pointer may move in a click. */
@@ -133,9 +135,13 @@ export class View {
     setFeatures(ends: Float32Array): void {
         this.marks.get('features')?.setParent(null);
         this.marks.delete('features');
-        const line = LINES.find(({ name }) => name === 'features');
-        if (line) this.addMark('features', this.makeLines(ends, line));
+        this.addMark('features', this.makeLines(ends, { name: 'features', ...CHOSEN }));
         this.request();
+    }
+
+    /** Frees what it draws with: a browser keeps few of them. */
+    end(): void {
+        this.gl.getExtension('WEBGL_lose_context')?.loseContext();
     }
 
     setPose(pose: Pose): void {

@@ -8,18 +8,14 @@ interface Outcome {
 }
 
 interface Module {
-    default(): Promise<unknown>;
+    default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
     run(task: string, content: Uint8Array, name: string, listener: (...progress: [string, number, number, number]) => void): Outcome;
 }
 
 /** Messages of progress come no more often, milliseconds. */
 const EVERY = 60;
 
-const address = new URL('pkg/seamstress_wasm.js', self.location.href).href;
-const loaded = (import(address) as Promise<Module>).then(async (module) => {
-    await module.default();
-    return module;
-});
+const glue = new URL('pkg/seamstress_wasm.js', self.location.href).href;
 let outcome: Outcome | undefined;
 
 function answer(message: Answer): void {
@@ -31,7 +27,8 @@ async function handle(request: Request): Promise<void> {
         if (outcome) answer({ kind: 'file', content: outcome.file(request.name) });
         return;
     }
-    const module = await loaded;
+    const module = await import(glue) as Module;
+    await module.default({ module_or_path: request.module });
     let last = 0;
     outcome = module.run(request.task, request.content, request.name, (stage, component, n_components, fraction) => {
         const now = performance.now();

@@ -6,6 +6,8 @@ use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
 use seamstress_mesh::attributes::Attributes;
+#[cfg(all(feature = "io", feature = "page"))]
+use seamstress_mesh::coarse::coarsen;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::{Violation, Violations};
@@ -139,6 +141,22 @@ impl Surface {
         self.remeshed(soup, vertex_origin, faces.iter().map(origin).collect())
     }
 
+    /// A coarser mesh of nearly the same surface, of about so many triangles; vertices of `kept` stay.
+    ///
+    /// # Errors
+    /// A fault of this program.
+    #[cfg(all(feature = "io", feature = "page"))]
+    pub(crate) fn coarse(&self, n_faces: usize, kept: &[u32]) -> Result<Self, Error> {
+        let coarse = coarsen(self.positions(), self.faces(), n_faces, kept);
+        let soup = TriangleSoup {
+            positions: coarse.vertices.iter().map(|&v| self.positions()[v as usize]).collect(),
+            faces: coarse.faces,
+        };
+        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
+        let vertex_origin = coarse.vertices.iter().map(|&v| self.input_vertex(v)).collect();
+        self.remeshed(soup, vertex_origin, coarse.face_origin.iter().map(origin).collect())
+    }
+
     /// Another mesh in place of this one, with where its vertices and faces come from in the input.
     fn remeshed(
         &self,
@@ -151,8 +169,15 @@ impl Surface {
             Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
         })?;
         let metric = Metric::from_positions(&mesh, &soup.positions);
-        let input = self.inner.parts.input.clone();
-        let parts = Parts { input, vertex_origin, face_origin, soup, ..Parts::default() };
+        let of_input = &self.inner.parts;
+        let parts = Parts {
+            input: of_input.input.clone(),
+            n_input_vertices: of_input.n_input_vertices,
+            vertex_origin,
+            face_origin,
+            soup,
+            ..Parts::default()
+        };
         let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
         Ok(Self { inner, attributes: Arc::default(), context: self.context.clone() })
     }

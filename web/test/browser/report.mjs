@@ -14,9 +14,6 @@ export const tests = {
         run('map', spot, '-o', 'spot.obj', '--report', 'spot.html', '--report', 'spot.json');
         run('measure', spot, 'spot.obj', '--json');
         const report = JSON.parse(readFileSync(join(folder, 'spot.json'), 'utf8'));
-        const size = statSync(join(folder, 'spot.html')).size;
-        expect(size < 60_000 + 15 * report.input.faces, `the page has ${size} bytes`);
-
         const page = await open(browser, address('spot.html'));
         await page.context().setOffline(true);
         await ready(page);
@@ -65,6 +62,22 @@ export const tests = {
         expect(sides === 4 && edges, `${sides} sides, edges ${edges}`);
         await expectAccessible(page);
         return page;
+    },
+
+    async 'reports are small'() {
+        for (const name of ['spot', 'bracket']) {
+            const mesh = join(root, `samples/${name}.obj`);
+            const faces = JSON.parse(run('check', mesh, '--json')).input.faces;
+            run('map', mesh, '-o', 'small_map.obj', '--report', 'map.html');
+            run('integer', mesh, '--quads', '1500', '-o', 'small_integer.obj', '--report', 'integer.html');
+            run('quad', mesh, '--quads', '1500', '-o', 'small_quads.obj', '--report', 'quad.html');
+            run('check', mesh, '--report', 'check.html');
+            run('check', mesh, 'small_map.obj', '--report', 'checked.html');
+            for (const command of ['map', 'integer', 'quad', 'check', 'checked']) {
+                const { size } = statSync(join(folder, `${command}.html`));
+                expect(size < 60_000 + 15 * faces, `${command} of ${name}: ${size} bytes, at most ${60_000 + 15 * faces}`);
+            }
+        }
     },
 
     async 'a fault of a mesh can be gone to'(browser) {

@@ -3,7 +3,9 @@ import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { folder, launch } from './browser.mjs';
 import { tests as ofApp } from './app.mjs';
+import { tests as ofGuards } from './guard.mjs';
 import { tests as ofReports } from './report.mjs';
+import { tests as ofStates } from './states.mjs';
 
 // With a folder in PICTURES, what each test ends with is kept there.
 const pictures = process.env.PICTURES;
@@ -11,7 +13,7 @@ if (pictures) mkdirSync(pictures, { recursive: true });
 
 // With a word, only the tests that have it in their names.
 const wanted = process.argv[2] ?? '';
-const all = Object.entries({ ...ofReports, ...ofApp }).filter(([name]) => name.includes(wanted));
+const all = Object.entries({ ...ofReports, ...ofStates, ...ofApp, ...ofGuards }).filter(([name]) => name.includes(wanted));
 const browser = await launch();
 let failed = 0;
 for (const [name, test] of all) {

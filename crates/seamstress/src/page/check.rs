@@ -39,7 +39,9 @@ impl Page {
             0 => {
                 "Its triangles form an oriented manifold: every edge has one or two, all with the same side up."
             }
-            _ => "Its triangles are no oriented manifold; the notes say where.",
+            _ => {
+                "Every edge should have one or two triangles, all with the same side up. Here it is not so; the notes say where."
+            }
         };
         facts.claim(errors.is_empty(), "A surface", text);
         features.iter().for_each(|features| facts.features(features.report()));

@@ -148,10 +148,9 @@ impl Facts {
             0 => "There is no seam: the map is in one piece without a cut.".into(),
             n => format!(
                 "The surface is cut along {} to lie flat. The two sides of every cut fit after a turn by a multiple of \
-                 90 degrees and a shift, to {:.1e} of the length of the edge. A square grid runs on across every seam \
-                 without a break.",
+                 90 degrees and a shift, {}. A square grid runs on across every seam without a break.",
                 counted(n, "edge"),
-                certificate.seam_residual
+                within(certificate.seam_residual, "of the length of the edge")
             ),
         };
         self.claim(true, "Every seam fits", text);
@@ -160,9 +159,9 @@ impl Facts {
                 .into(),
             n => format!(
                 "At {}, called cones, other than four squares meet; around every other vertex the map makes a full \
-                 turn. All angles are right to {:.1e} radians, and the cones balance as the topology demands.",
+                 turn. All angles are right, {}, and the cones balance as the topology demands.",
                 counted(n, "point"),
-                certificate.angle_error
+                within(certificate.angle_error, "radians")
             ),
         };
         self.claim(true, "Angles are multiples of 90 degrees", text);
@@ -175,18 +174,15 @@ impl Facts {
     }
 
     pub(super) fn integers(&mut self, certificate: &IntegerCertificate) {
-        let how = match certificate.integral_error {
-            0.0 => "exactly".into(),
-            error => format!("to within {error:.1e}"),
-        };
         let edges = counted(certificate.edges, "edge");
         self.claim(
             true,
             "The unit grid closes up",
             format!(
-                "Shifts across {edges} and the places of {} are whole numbers, {how}. The unit squares of the plane \
+                "Shifts across {edges} and the places of {} are whole numbers, {}. The unit squares of the plane \
                  are therefore quads of the surface.",
-                counted(certificate.integral_cones, "cone")
+                counted(certificate.integral_cones, "cone"),
+                within(certificate.integral_error, "units")
             ),
         );
     }
@@ -197,10 +193,7 @@ impl Facts {
             0 => "There is no feature edge to follow.".into(),
             _ => format!(
                 "{edges} run along the grid, {}, and the angles between them are multiples of 90 degrees.",
-                match alignment.axis_error {
-                    0.0 => "exactly".into(),
-                    error => format!("to {error:.1e} degrees"),
-                }
+                within(alignment.axis_error, "degrees")
             ),
         };
         self.claim(true, "Features lie along the grid", text);
@@ -273,6 +266,14 @@ impl Facts {
             let n = counted(components.len(), "component");
             self.note(format!("{n} too small for a whole cell: no quads there"));
         }
+    }
+}
+
+/// How well something fits.
+fn within(error: f64, of: &str) -> String {
+    match error {
+        0.0 => "exactly".into(),
+        error => format!("to within {error:.1e} {of}"),
     }
 }
 

@@ -5,12 +5,15 @@ use super::Page;
 use crate::context::Context;
 use crate::error::{Error, ErrorKind};
 use crate::feature_sources::{FeatureSource, Features};
+use crate::files::Output;
 use crate::inspection::{Inspection, SurfaceOptions};
 use crate::integer::IntegerGridMap;
 use crate::map::{SeamlessMap, UvSet};
 use crate::options::{IntegerMapOptions, MapOptions, QuadOptions};
 use crate::quads::QuadMesh;
+use crate::surface::Surface;
 use serde::Deserialize;
+use std::path::Path;
 
 /// Something to make of a mesh.
 #[doc(hidden)]
@@ -19,6 +22,8 @@ use serde::Deserialize;
 pub struct Task {
     #[serde(default)]
     surface: SurfaceOptions,
+    /// For a preview: made of a coarser mesh, of about so many triangles.
+    coarse: Option<usize>,
     make: Make,
 }
 
@@ -56,16 +61,34 @@ impl Task {
     pub fn parse(json: &str) -> Result<Self, Error> {
         let task: Self =
             serde_json::from_str(json).map_err(|error| Error::options(error.to_string()))?;
-        let features = match &task.make {
+        match task.features().sources().iter().find_map(FeatureSource::file) {
+            Some(_) => Err(Error::options("features cannot come from a file here")),
+            None => Ok(task),
+        }
+    }
+
+    fn features(&self) -> &Features {
+        match &self.make {
             Make::Check(features) => features,
             Make::Map(options) => &options.features,
             Make::Integer(options) => &options.map.features,
             Make::Quads(options) => &options.map.features,
-        };
-        match features.sources().iter().find_map(FeatureSource::file) {
-            Some(_) => Err(Error::options("features cannot come from a file here")),
-            None => Ok(task),
         }
+    }
+
+    /// The surface to make something of.
+    fn surface(&self, inspection: Inspection, context: Context) -> Result<Surface, Error> {
+        let surface = inspection.surface()?.with_context(context);
+        let Some(n_faces) = self.coarse else { return Ok(surface) };
+        // Edges that are named by their ends stay.
+        let named = self.features().sources().iter().filter_map(|source| match source {
+            FeatureSource::Edges(edges) => Some(edges.as_flattened()),
+            _ => None,
+        });
+        let places = surface.places();
+        let kept: Vec<u32> =
+            named.flatten().filter_map(|vertex| places.vertices.get(vertex).copied()).collect();
+        surface.coarse(n_faces, &kept)
     }
 
     /// Does it with the content of a file of some name.
@@ -74,8 +97,7 @@ impl Task {
     /// Those of reading, and of what is made.
     pub fn run(&self, content: &[u8], name: &str, context: Context) -> Result<Done, Error> {
         let inspection = Inspection::of_file_content(content, name, &self.surface)?;
-        let make_surface =
-            |inspection: Inspection| Ok::<_, Error>(inspection.surface()?.with_context(context));
+        let make_surface = |inspection| self.surface(inspection, context);
         let (page, made) = match &self.make {
             Make::Check(features) => {
                 let curves = match inspection.is_surface() && !features.is_none() {
@@ -126,13 +148,22 @@ impl Done {
         if name.ends_with(".html") {
             return Ok(self.page.html().into_bytes());
         }
+        let path = Path::new(name);
         let mut file = Vec::new();
-        let is_map = name.ends_with(".obj") || name.ends_with(".glb");
         let written = match &self.made {
-            Made::Map(map) if is_map => map.write_as(name, UvSet::First, &mut file),
-            Made::Integer(map) if is_map => map.write_as(name, UvSet::First, &mut file),
-            Made::Quads(quads) => quads.write_as(name, &mut file),
-            _ => {
+            Made::Map(map) => {
+                Output::Map.check_name(path)?;
+                map.write_as(path, UvSet::First, &mut file)
+            }
+            Made::Integer(map) => {
+                Output::Map.check_name(path)?;
+                map.write_as(path, UvSet::First, &mut file)
+            }
+            Made::Quads(quads) => {
+                Output::Quads.check_name(path)?;
+                quads.write_as(path, &mut file)
+            }
+            Made::Checked => {
                 let text = format!("{name}: the result has no file of this kind");
                 return Err(Error::new(ErrorKind::Unwritable, text));
             }

@@ -114,3 +114,31 @@ fn pages_side_by_side_are_the_pages() {
     let both = html("Comparison", &[[&facts, &scene], [&facts, &scene]]);
     assert_eq!(embedded(&both), [[facts.as_str(), scene.as_str()]; 2]);
 }
+
+#[cfg(feature = "io")]
+#[test]
+fn a_preview_is_made_of_a_coarser_mesh_with_the_edges_that_were_picked() {
+    let soup = kit::bumpy(&kit::icosphere(4), 0.1, 1);
+    let mut file = String::new();
+    soup.positions.iter().for_each(|[x, y, z]| file += &format!("v {x} {y} {z}\n"));
+    soup.faces.iter().for_each(|face| {
+        let [a, b, c] = face.map(|v| v + 1);
+        file += &format!("f {a} {b} {c}\n");
+    });
+    let [a, b, c] = soup.faces[100];
+    let task = format!(
+        r#"{{"coarse": 600, "make": {{"map": {{"features": ["edges:{a}-{b},{b}-{c}"]}}}}}}"#
+    );
+    let done = Task::parse(&task)
+        .unwrap()
+        .run(file.as_bytes(), "ball.obj", crate::Context::new())
+        .unwrap();
+    let [facts, scene] = &read(&done.page().html())[0];
+    assert!(claims(facts).iter().all(|&passed| passed), "{facts}");
+    assert_eq!(
+        scene["arrays"][1],
+        serde_json::json!({"name": "faces", "length": 600, "planes": 2})
+    );
+    assert_eq!(facts["report"]["features"]["edges"], 2);
+    assert!(done.file("ball.stl").is_err() && !done.file("ball.obj").unwrap().is_empty());
+}

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,10 @@ const MOST_RUNNING: usize = 4;
 /// Results that are kept.
 const MOST_KEPT: usize = 6;
 /// A running job that nobody has asked for this long is stopped: its page is closed.
-const FORGOTTEN: Duration = Duration::from_secs(20);
+pub(super) const FORGOTTEN: Duration = Duration::from_secs(20);
+/// How long a page that asks how far a job is waits for the answer, unless the job ends. It asks again at once: timers of
+/// pages that nobody sees may stand still for a minute.
+const ANSWER_AFTER: Duration = Duration::from_millis(200);
 
 /// A piece of work.
 #[derive(Debug)]
@@ -24,6 +27,7 @@ pub(super) struct Job {
     progress: Mutex<Option<Progress>>,
     /// The result, or the refusal as JSON.
     outcome: Mutex<Option<Result<Done, String>>>,
+    ended: Condvar,
     seen: Mutex<Instant>,
 }
 
@@ -43,9 +47,13 @@ impl Job {
         lock(&self.outcome).is_none()
     }
 
-    /// How far it is.
+    /// How far it is, a little later.
     pub(super) fn state(&self) -> Value {
         *lock(&self.seen) = Instant::now();
+        let outcome = self
+            .ended
+            .wait_timeout_while(lock(&self.outcome), ANSWER_AFTER, |outcome| outcome.is_none());
+        let (outcome, _) = outcome.unwrap_or_else(PoisonError::into_inner);
         let progress = lock(&self.progress).map(|progress| {
             json!({
                 "stage": progress.stage.name(),
@@ -54,7 +62,7 @@ impl Job {
                 "fraction": progress.fraction,
             })
         });
-        let (state, error) = match &*lock(&self.outcome) {
+        let (state, error) = match &*outcome {
             None => ("running", None),
             Some(Ok(_)) => ("done", None),
             Some(Err(refusal)) => ("failed", serde_json::from_str(refusal).ok()),
@@ -77,6 +85,7 @@ impl Job {
             task.run(content, name, context).map_err(|error| refusal(&error))
         }));
         *lock(&self.outcome) = Some(done.unwrap_or_else(broken));
+        self.ended.notify_all();
     }
 }
 
@@ -98,6 +107,7 @@ impl Jobs {
             cancel: CancelToken::new(),
             progress: Mutex::new(None),
             outcome: Mutex::new(None),
+            ended: Condvar::new(),
             seen: Mutex::new(Instant::now()),
         });
         let (watched, worker) = (Arc::clone(&job), Arc::clone(&job));
@@ -123,11 +133,11 @@ impl Jobs {
         }
     }
 
-    /// Stops those whose page is closed; says whether any are left.
-    pub(super) fn stop_forgotten(&self) -> bool {
+    /// Stops those that nobody has asked for so long; says whether any are left.
+    pub(super) fn stop_forgotten(&self, long: Duration) -> bool {
         let mut jobs = lock(&self.jobs);
         jobs.1.retain(|_, job| {
-            let is_forgotten = job.is_running() && lock(&job.seen).elapsed() > FORGOTTEN;
+            let is_forgotten = job.is_running() && lock(&job.seen).elapsed() > long;
             if is_forgotten {
                 job.cancel.cancel();
             }
@@ -140,5 +150,35 @@ impl Jobs {
 impl Drop for Jobs {
     fn drop(&mut self) {
         lock(&self.jobs).1.values().for_each(|job| job.cancel.cancel());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use seamstress_testkit::icosphere;
+
+    #[test]
+    fn a_job_that_nobody_asks_for_is_stopped() {
+        let ball = icosphere(6);
+        let vertices = ball.positions.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+        let faces = ball.faces.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+        let file: String = vertices.chain(faces).collect();
+        let jobs = Jobs::default();
+        let task = Task::parse(r#"{"make": {"map": {}}}"#).unwrap();
+        let number = jobs.start(task, file.into_bytes(), "ball.obj".into()).unwrap();
+        let job = jobs.get(number).unwrap();
+        assert!(jobs.stop_forgotten(FORGOTTEN), "it is at work");
+        assert!(!jobs.stop_forgotten(Duration::ZERO));
+        assert!(jobs.get(number).is_none());
+        let deadline = Instant::now() + Duration::from_secs(60);
+        let state = loop {
+            let state = job.state();
+            if state["state"] != "running" {
+                break state;
+            }
+            assert!(Instant::now() < deadline, "it goes on");
+        };
+        assert_eq!(state["error"]["code"], "cancelled", "{state}");
     }
 }

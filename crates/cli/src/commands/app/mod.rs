@@ -28,7 +28,7 @@ Examples:
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = after_help(EXAMPLES))]
 pub(crate) struct AppArgs {
-    /// A mesh to start with: OBJ, OFF, PLY or STL
+    /// A mesh to start with: OBJ, OFF, PLY, STL or glTF
     mesh: Option<PathBuf>,
 
     /// Serve the page at this port [default: one that is free]

@@ -1,6 +1,6 @@
 //! The page and its jobs over HTTP, for this machine alone.
 
-use super::jobs::{Job, Jobs};
+use super::jobs::{FORGOTTEN, Job, Jobs};
 use seamstress::{Task, refusal};
 use std::io::{self, Read};
 use std::net::Ipv4Addr;
@@ -86,7 +86,7 @@ impl Server {
                 Ok(None) => {}
                 Err(_) => return,
             }
-            let is_working = self.shared.jobs.stop_forgotten();
+            let is_working = self.shared.jobs.stop_forgotten(FORGOTTEN);
             let asked = *self.shared.asked.lock().unwrap_or_else(PoisonError::into_inner);
             if !is_working && asked.elapsed() > idle {
                 return;
