@@ -156,7 +156,21 @@ function flow(place) {
     };
 }
 
-export const tests = { 'the app of the program makes quads and maps': flow(program) };
+export const tests = {
+    'the app of the program makes quads and maps': flow(program),
+
+    async 'the program shows the mesh that it was started with'(browser) {
+        const { address, stop } = await program(bracket);
+        try {
+            const page = await open(browser, address);
+            await done(page);
+            expect((await page.locator('.heading h1').textContent()) === 'bracket.obj', 'it is the mesh of the file');
+            return page;
+        } finally {
+            stop();
+        }
+    },
+};
 
 if (hasMethod) {
     tests['the app in a browser makes quads and maps by itself'] = flow(host);

@@ -86,11 +86,18 @@ export const tests = {
 if (hasMethod) {
     tests['the app in a browser works without a network, and asks nobody'] = async (browser) => {
         const { address, stop } = await host();
-        const page = await open(browser, address);
+        // What another page of the host keeps stays.
+        const page = await open(browser, `${address}style.css`);
+        await page.evaluate(() => caches.open('of another page'));
+        await page.goto(address);
+        // That one had no icon.
+        page.faults.length = 0;
         await page.evaluate(() => navigator.serviceWorker.ready);
         stop();
         await page.context().setOffline(true);
         await page.reload();
+        const kept = await page.evaluate(() => caches.keys());
+        expect(kept.length === 2 && kept.includes('of another page'), String(kept));
         await sample(page, 'Step');
         await page.getByLabel('Number of quads, or edge length').fill('200');
         await start(page);
