@@ -118,3 +118,81 @@ impl<'a> Map<'a> {
         (quadrants, quadrants > 4 || quadrants == 4 && is_past())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(degrees: f64) -> Point {
+        [degrees.to_radians().cos(), degrees.to_radians().sin()]
+    }
+
+    /// What the turning around the middle of an open fan is, whose rim lies at some points.
+    fn turning_to(rim: &[Point]) -> (i32, bool) {
+        let n = rim.len() as u32;
+        let faces: Vec<_> = (1..n).map(|k| [0, k, k + 1]).collect();
+        let uvs: Vec<Point> =
+            rim.windows(2).flat_map(|ends| [[0.0; 2], ends[0], ends[1]]).collect();
+        Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0)
+    }
+
+    #[test]
+    fn open_fans_of_all_angles() {
+        for start in [0.0, 17.0, 89.0, 200.0] {
+            for step in [1.0, 50.0, 90.0, 119.0, 179.0] {
+                for n in 1..=12 {
+                    let rim: Vec<_> = (0..=n).map(|k| at(start + step * f64::from(k))).collect();
+                    let (quadrants, is_past) = turning_to(&rim);
+                    let angle = step * f64::from(n);
+                    assert!((f64::from(quadrants) - angle / 90.0).abs() < 1.001, "{n} of {step}");
+                    assert!(
+                        angle == 360.0 || is_past == (angle > 360.0),
+                        "{n} of {step} from {start}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_full_turn_is_told_from_a_little_more() {
+        let rim = |last| [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], last];
+        assert_eq!(turning_to(&rim([2.0, 0.0])), (4, false));
+        assert_eq!(turning_to(&rim([2.0, -1e-300])), (3, false));
+        assert_eq!(turning_to(&rim([2.0, 1e-300])), (4, true));
+    }
+
+    /// A closed fan whose faces lie in charts of their own, each turned by `chart` quarters more than the last.
+    fn closed_fan(n: u32, degrees: f64, chart: i32) -> i32 {
+        let faces: Vec<_> = (0..n).map(|k| [0, 1 + k, 1 + (k + 1) % n]).collect();
+        let uvs: Vec<Point> = (0..n as i32)
+            .flat_map(|k| {
+                let from = 10.0 + degrees * f64::from(k);
+                [[0.0; 2], at(from), at(from + degrees)].map(|p| turned(p, k * chart))
+            })
+            .collect();
+        Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0).0
+    }
+
+    #[test]
+    fn closed_fans_in_all_charts() {
+        for chart in 0..4 {
+            assert_eq!(closed_fan(5, 72.0, chart), 4);
+            assert_eq!(closed_fan(3, 30.0, chart), 1);
+            assert_eq!(closed_fan(7, 360.0 * 2.0 / 7.0, chart), 8, "wound twice");
+            assert_eq!(closed_fan(5, -72.0, chart), -4);
+        }
+    }
+
+    #[test]
+    fn an_image_may_pass_an_axis_by_rounding() {
+        // A quarter, a little more, and a little less than a half turn; the two images of the edge along the axis lie on either side of it.
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1]];
+        for [one, other] in [[1e-17, 0.0], [0.0, 1e-17], [1e-17, -1e-17], [-1e-17, 1e-17]] {
+            let [east, north, west] = [[1.0, 0.0], [0.0, 1.0], [-1.0, -1e-9]];
+            let (one, other) = ([one, north[1]], [other, north[1]]);
+            let uvs = [[0.0; 2], east, one, [0.0; 2], other, west, [0.0; 2], west, [1.0, -0.0]];
+            assert_eq!(Map::new(4, &faces, &uvs).unwrap().turning(0).0, 4);
+        }
+    }
+}

@@ -4,12 +4,12 @@
 //! The good maps are laid by hand: grids over themselves, and a cube as six squares.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
-mod common;
+mod meshes;
 
-use common::mesh_of;
+use meshes::{SeamlessMap, mesh_of};
+use seamstress_certify::{Alignment, AlignmentTolerance, Tolerance, Violation};
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violation};
 use seamstress_testkit::{cube, disk_grid, fan};
 use std::collections::BTreeMap;
 

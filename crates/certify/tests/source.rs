@@ -1,8 +1,7 @@
 //! A map keeps its source: every vertex and face that was touched is named.
 
+use seamstress_certify::{Violation, compare_source};
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::Violation;
-use seamstress_parametrize::map::compare_source;
 use seamstress_testkit::cube;
 
 #[test]

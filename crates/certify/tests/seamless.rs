@@ -4,12 +4,12 @@
 //! turned, so that all eight corners are cones of index 1 and all twelve edges seams.
 #![allow(clippy::unwrap_used, reason = "helpers of a test")]
 
-mod common;
+mod meshes;
 
-use common::mesh_of;
-use seamstress_mesh::TriMesh;
+use meshes::{SeamlessMap, mesh_of};
+use seamstress_certify::{Tolerance, Violation};
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::{SeamlessMap, Tolerance, Violation};
+use seamstress_mesh::{Halfedge, TriMesh};
 use seamstress_testkit::{cube, disjoint_union, disk_grid, fan};
 
 type Uvs = Vec<[f64; 2]>;
@@ -51,7 +51,7 @@ fn certified((mesh, uvs): &(TriMesh, Uvs)) -> SeamlessMap {
 
 #[track_caller]
 fn violations((mesh, uvs): &(TriMesh, Uvs)) -> Vec<Violation> {
-    SeamlessMap::certify(mesh, uvs.clone(), &Tolerance::default()).unwrap_err().0
+    SeamlessMap::certify(mesh, uvs.clone(), &Tolerance::default()).err().unwrap().0
 }
 
 fn moved(map: &(TriMesh, Uvs), how: impl Fn([f64; 2]) -> [f64; 2]) -> (TriMesh, Uvs) {
@@ -74,9 +74,10 @@ fn a_cube_laid_by_hand_is_seamless() {
 fn seams_carry_left_to_right() {
     let (mesh, uvs) = cube_by_hand();
     for seam in certified(&(mesh.clone(), uvs.clone())).seams() {
-        let right = mesh.twin(seam.left).unwrap();
-        let ends = [(seam.left, right.next()), (seam.left.next(), right)];
-        assert_eq!(seam.vertices, [mesh.origin(seam.left).0, mesh.tip(seam.left).0]);
+        let left = Halfedge(seam.left);
+        let right = mesh.twin(left).unwrap();
+        let ends = [(left, right.next()), (left.next(), right)];
+        assert_eq!(seam.vertices, [mesh.origin(left).0, mesh.tip(left).0]);
         for (here, there) in ends.map(|(l, r)| (uvs[l.at()], uvs[r.at()])) {
             let [x, y] = here;
             let turned = [[x, y], [-y, x], [-x, -y], [y, -x]][seam.matching as usize];
@@ -208,7 +209,7 @@ fn an_angle_is_refused_where_all_seams_fit() {
     let corner = |k: u32| [[0.0; 2], at(63.0 * f64::from(k)), at(63.0 * f64::from(k) + 62.9)];
     let map = (mesh_of(&fan(40, 0.0, true)), (0..40).flat_map(corner).collect::<Uvs>());
     let loose = Tolerance::new(0.01, 1e-3).unwrap();
-    let found = SeamlessMap::certify(&map.0, map.1, &loose).unwrap_err().0;
+    let found = SeamlessMap::certify(&map.0, map.1, &loose).err().unwrap().0;
     let [Violation::ConeAngle { vertex: 0, quarters }] = found[..] else { panic!("{found:?}") };
     assert!((quarters - 40.0 * 62.9 / 90.0).abs() < 1e-12);
 }
@@ -350,10 +351,10 @@ fn violations_speak_of_their_elements() {
     let (mesh, mut uvs) = cube_by_hand();
     uvs[1][0] += 0.5;
     uvs[3][1] = f64::NAN;
-    let error = SeamlessMap::certify(&mesh, uvs, &Tolerance::default()).unwrap_err();
+    let error = SeamlessMap::certify(&mesh, uvs, &Tolerance::default()).err().unwrap();
     assert_eq!(error.to_string(), "face 1 has a UV that is not finite");
     let error = SeamlessMap::certify(&mesh, cube_opened_by(0.5).1, &Tolerance::default());
-    let text = error.unwrap_err().to_string();
+    let text = error.err().unwrap().to_string();
     assert!(text.starts_with("edge ") && text.contains("faces 0 and"), "{text}");
     assert!(text.contains("more violation"), "{text}");
 }
