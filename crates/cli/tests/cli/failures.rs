@@ -172,6 +172,69 @@ fn an_interrupt_is_4_and_leaves_nothing() {
     assert_eq!(folder.names(), ["in.obj"]);
 }
 
+/// A process that is killed cannot tidy up, but what it was to write is there as a whole or not at all.
+#[cfg(unix)]
+#[test]
+fn a_kill_at_any_moment_leaves_no_half_file() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(24, 16, 1.0, 0.4));
+    folder.expect(0, &["map", "in.obj", "-o", "whole.obj"]);
+    let whole = folder.read("whole.obj");
+    let start = std::time::Instant::now();
+    folder.expect(0, &["map", "in.obj", "-o", "a.obj"]);
+    let whole_time = start.elapsed();
+    for step in 0..=12 {
+        folder.write("a.obj", "old");
+        let mut child = folder.start(&["map", "in.obj", "-o", "a.obj"]);
+        std::thread::sleep(whole_time * step / 10);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let found = folder.read("a.obj");
+        assert!(found == "old" || found == whole, "step {step}");
+    }
+}
+
+/// A limit on the size of files is what a full disk is to a program: a write that fails.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_2_and_leaves_nothing() {
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::torus(24, 16, 1.0, 0.4));
+    folder.write("a.obj", "old");
+    for name in ["a.obj", "b.obj.gz", "c.html"] {
+        let arguments = match name {
+            "c.html" => format!("map in.obj -o b.obj --report {name}"),
+            _ => format!("map in.obj -o {name}"),
+        };
+        let program = env!("CARGO_BIN_EXE_seamstress");
+        let script = format!("trap '' XFSZ; ulimit -f 4; exec {program} {arguments}");
+        let mut command = std::process::Command::new("bash");
+        let run = command.args(["-c", &script]).current_dir(folder.path("")).output().unwrap();
+        let message = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert_eq!(run.status.code(), Some(2), "{name}: {message}");
+        assert!(message.starts_with("error: cannot write "), "{message}");
+        assert_eq!(folder.names(), ["a.obj", "in.obj"], "{name}");
+        assert_eq!(folder.read("a.obj"), "old");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_written_is_2() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.write_obj("in.obj", &testkit::cube());
+    let closed = folder.path("closed");
+    std::fs::create_dir(&closed).unwrap();
+    std::fs::set_permissions(&closed, std::fs::Permissions::from_mode(0o555)).unwrap();
+    // The superuser may write everywhere.
+    if std::fs::write(closed.join("probe"), "").is_err() {
+        let run = folder.expect(2, &["map", "in.obj", "-o", "closed/a.obj"]);
+        assert!(run.stderr.contains("the directory cannot be written"), "{run:?}");
+    }
+    std::fs::set_permissions(&closed, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
 #[test]
 fn a_failure_keeps_what_was_there() {
     let folder = Folder::new();
