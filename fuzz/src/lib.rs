@@ -36,17 +36,18 @@ impl Bytes<'_> {
         }
     }
 
-    /// Polygons with corners among vertices, and some that are not.
+    /// Polygons with corners among vertices, and a few that are not.
     pub fn polygons(&mut self, n_vertices: usize) -> Vec<Vec<u32>> {
+        let corner = |bytes: &mut Self| {
+            let missing = usize::from(bytes.byte() == 7);
+            bytes.below(n_vertices + missing) as u32
+        };
         let n = self.below(24);
-        (0..n)
-            .map(|_| {
-                let corners = 1 + self.below(6);
-                (0..corners)
-                    .map(|_| self.below(n_vertices + usize::from(self.byte() == 7)) as u32)
-                    .collect()
-            })
-            .collect()
+        let mut polygon = |_| {
+            let corners = 1 + self.below(6);
+            (0..corners).map(|_| corner(self)).collect()
+        };
+        (0..n).map(&mut polygon).collect()
     }
 
     /// A surface of any genus, with boundaries, needles, copies of vertices, tiny or huge; sometimes spoiled.
@@ -78,9 +79,12 @@ impl Bytes<'_> {
         for _ in 0..self.byte().saturating_sub(250) {
             let (vertex, face) = (self.below(soup.positions.len()), self.below(soup.faces.len()));
             match self.byte() % 3 {
-                0 => soup.positions[vertex][self.below(3)] = self.coordinate(),
+                0 => {
+                    let axis = self.below(3);
+                    soup.positions[vertex][axis] = self.coordinate();
+                }
                 1 => soup.faces[face][self.below(3)] = vertex as u32,
-                _ => soup.faces.push(soup.faces[face]),
+                _ => soup.faces.extend_from_within(face..face + 1),
             }
         }
         soup

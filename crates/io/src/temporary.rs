@@ -60,11 +60,12 @@ mod with_files {
 
     impl Write for Temporary {
         fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-            self.0.write(data)
+            // The errors of the file itself do not tell its name, which tells the user nothing.
+            self.0.as_file().write(data)
         }
 
         fn flush(&mut self) -> io::Result<()> {
-            self.0.flush()
+            self.0.as_file().flush()
         }
     }
 

@@ -212,7 +212,8 @@ fn a_full_disk_is_2_and_leaves_nothing() {
         let run = command.args(["-c", &script]).current_dir(folder.path("")).output().unwrap();
         let message = String::from_utf8_lossy(&run.stderr).into_owned();
         assert_eq!(run.status.code(), Some(2), "{name}: {message}");
-        assert!(message.starts_with("error: cannot write "), "{message}");
+        assert!(message.starts_with(&format!("error: cannot write {name}: ")), "{message}");
+        assert!(!message.contains(".tmp"), "{message}");
         assert_eq!(folder.names(), ["a.obj", "in.obj"], "{name}");
         assert_eq!(folder.read("a.obj"), "old");
     }
