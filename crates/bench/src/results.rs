@@ -67,6 +67,7 @@ const PAGES: &[Page] = &[
             "quads MESHES --largest 100000 --quads 2500 --smooth 5",
         ],
     },
+    Page { file: "sizes", title: "Sizes of quads", commands: &["sizes MESHES --largest 100000"] },
     Page { file: "fields", title: "Cross fields", commands: &["fields MESHES"] },
     Page {
         file: "methods",

@@ -115,10 +115,16 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 15] = [
+const RARE: [&str; 21] = [
     "uv_set",
     "raw",
     "corner_angle",
+    "directions",
+    "sizes",
+    "smooth",
+    "min_edge",
+    "max_edge",
+    "size_growth",
     "cone_price",
     "angle",
     "shift",

@@ -5,7 +5,7 @@ use crate::text::{as_options, counted, listing, rounded, row};
 use seamstress::{
     Alignment, Certificate, ComponentStats, ConeReport, Distortion, FailedPart, FeatureReport,
     IntegerCertificate, MapReport, Measure, Measurement, MixedIntegerStats, Orientation,
-    PartReport, QuadMeshReport, QualityReport, SurfaceReport,
+    PartReport, QuadMeshReport, QualityReport, SizeReport, SurfaceReport,
 };
 
 /// Dropped features that are listed; the report has them all.
@@ -158,6 +158,7 @@ pub(crate) fn mixed_integer_rows(components: &[ComponentStats]) -> Vec<String> {
 /// Distortion, cones, seams and certificate of a map.
 pub(crate) fn map_rows(map: &MapReport) -> Vec<String> {
     let mut rows = distortion_rows(&map.distortion);
+    rows.extend(map.sizes.iter().flat_map(cell_size_rows));
     rows.extend(certificate_rows(&map.cones, &map.certificate));
     rows
 }
@@ -219,6 +220,17 @@ pub(crate) fn distortion_rows(d: &Distortion) -> Vec<String> {
         rows.push(row("", &format!("{triangles} without area left out of these metrics")));
     }
     rows
+}
+
+/// The sizes of cells asked for and made.
+pub(crate) fn cell_size_rows(sizes: &SizeReport) -> Vec<String> {
+    let d = &sizes.distortion;
+    let text = format!(
+        "counted in these sizes tau {}, symmetric Dirichlet {}",
+        rounded(d.tau),
+        rounded(d.symmetric_dirichlet)
+    );
+    vec![row("sizes", &sizes.to_string()), row("", &text)]
 }
 
 /// What is integral.

@@ -4,6 +4,7 @@ use crate::ReadError;
 use crate::error::{Fault, Parsed, ReadErrorKind};
 use crate::numbers::{DEGREE, begin, degree, element, end, integer, next, read, small};
 use crate::text::Text;
+use crate::vertex_values::vertex_values;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -34,7 +35,7 @@ pub fn parse_cones(bytes: &[u8], name: &str, n_vertices: usize) -> Result<Cones,
     let parse = || {
         let text = begin(bytes)?;
         match text.clone().skip_tokens() {
-            1 => angles(text, n_vertices).map(Cones::Angles),
+            1 => vertex_values(text, n_vertices, "an angle in radians").map(Cones::Angles),
             _ => singularities(text, n_vertices).map(Cones::Listed),
         }
     };
@@ -58,24 +59,6 @@ fn singularities(mut text: Text<'_>, n_vertices: usize) -> Parsed<Vec<(u32, i32)
     }
     end(&mut text, "cones", count)?;
     Ok(cones)
-}
-
-fn angles(mut text: Text<'_>, n_vertices: usize) -> Parsed<Vec<f64>> {
-    let mut angles = Vec::new();
-    while text.seek() {
-        if angles.len() == n_vertices {
-            let found = format!("more than {n_vertices}");
-            let kind = ReadErrorKind::OtherMesh { what: "vertices", expected: n_vertices, found };
-            return Err(Fault::at(text.here(), kind));
-        }
-        angles.push(text.finite("an angle in radians")?);
-    }
-    if angles.len() < n_vertices {
-        let found = angles.len().to_string();
-        let kind = ReadErrorKind::OtherMesh { what: "vertices", expected: n_vertices, found };
-        return Err(Fault::at(text.last_line(), kind));
-    }
-    Ok(angles)
 }
 
 /// Writes cones as `.sing` text: vertices (from 0) and their indices in quarters.

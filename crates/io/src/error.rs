@@ -160,6 +160,8 @@ pub enum Missing {
         /// The number of vertices.
         vertices: usize,
     },
+    /// There is no polyline.
+    Lines,
 }
 
 impl fmt::Display for Missing {
@@ -167,6 +169,7 @@ impl fmt::Display for Missing {
         match self {
             Self::Content => f.write_str("the file is empty"),
             Self::Vertices => f.write_str("the file has no vertices"),
+            Self::Lines => f.write_str("the file has no `l` elements"),
             Self::Faces { vertices } => {
                 write!(f, "the file has {} but no faces", Count(*vertices, "vertex"))
             }

@@ -6,6 +6,8 @@
 //! the file, the line or byte, what was found and what was expected; time and memory are linear in
 //! the size of the file, whatever its header announces. Geometry and topology are not judged here.
 //!
+//! [`read_vertex_values`] reads a number for every vertex.
+//!
 //! [`read_pairs`] and [`read_sharp`] read files that name feature edges, in the same manner.
 //!
 //! Fields on a mesh are read and written as `.rawfield` and `.rosy` ([`read_field`]), cones as `.sing` or
@@ -54,6 +56,7 @@ mod read;
 mod stl;
 mod temporary;
 mod text;
+mod vertex_values;
 mod write;
 
 pub use atomic::{AtomicFile, WriteError};
@@ -65,6 +68,8 @@ pub use format::{Format, is_compressed};
 pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{PolygonMesh, Polygons};
 pub use note::Note;
+pub use obj::{parse_segments, read_segments};
 pub use read::{parse_mesh, read_mesh, read_mesh_as};
 pub use seamstress_mesh::attributes;
+pub use vertex_values::{parse_vertex_values, read_vertex_values};
 pub use write::Polymesh;

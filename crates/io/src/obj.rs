@@ -2,10 +2,12 @@
 
 use crate::error::{Fault, Missing, Parsed, Position, ReadErrorKind, check_room};
 use crate::labels::Labels;
+use crate::numbers::read;
 use crate::obj_index::{Corner, References};
 use crate::text::{Text, parse_number, quote, refuse_nul};
-use crate::{Format, Note, PolygonMesh};
+use crate::{Format, Note, PolygonMesh, ReadError};
 use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
+use std::path::Path;
 
 /// Marks a corner without texture coordinate or normal.
 const NONE: u32 = u32::MAX;
@@ -43,6 +45,28 @@ pub(crate) fn is_keyword(token: &[u8]) -> bool {
 
 /// Reads OBJ text.
 pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
+    read_all(bytes)?.finish()
+}
+
+/// Reads the polylines of an OBJ file, which needs no polygons: their segments, by the places of their ends.
+///
+/// # Errors
+/// [`ReadError`], also if there is none.
+pub fn read_segments(path: &Path) -> Result<Vec<[[f64; 3]; 2]>, ReadError> {
+    read(path, parse_segments)
+}
+
+/// Reads the polylines in OBJ text; see [`read_segments`].
+///
+/// # Errors
+/// As [`read_segments`].
+pub fn parse_segments(bytes: &[u8], name: &str) -> Result<Vec<[[f64; 3]; 2]>, ReadError> {
+    let segments = read_all(bytes).and_then(Reader::segments);
+    segments.map_err(|fault| fault.named(name))
+}
+
+/// Takes in all statements.
+fn read_all(bytes: &[u8]) -> Parsed<Reader<'_>> {
     refuse_nul(bytes)?;
     let mut text = Text::new(bytes).with_continuation();
     let mut reader = Reader::new();
@@ -50,7 +74,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<PolygonMesh> {
         reader.statement(&mut text)?;
         text.next_line();
     }
-    reader.finish()
+    Ok(reader)
 }
 
 /// The rest of a line: a name, or several.
@@ -268,6 +292,16 @@ impl<'a> Reader<'a> {
         self.left_out.unknown += 1;
         self.left_out.first_unknown.get_or_insert_with(|| (line, quote(keyword)));
         Ok(())
+    }
+
+    /// The segments of polylines alone.
+    fn segments(self) -> Parsed<Vec<[[f64; 3]; 2]>> {
+        let PolygonMesh { positions, lines, .. } = self.mesh;
+        self.vertex_references.check(positions.len())?;
+        if lines.is_empty() {
+            return Err(Fault::whole_file(ReadErrorKind::Empty(Missing::Lines)));
+        }
+        Ok(lines.iter().map(|ends| ends.map(|v| positions[v as usize])).collect())
     }
 
     fn finish(mut self) -> Parsed<PolygonMesh> {

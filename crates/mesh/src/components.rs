@@ -17,6 +17,11 @@ pub struct Component {
 impl Component {
     /// Those of the piece among the positions of the whole.
     pub fn positions(&self, of_whole: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.of_vertices(of_whole)
+    }
+
+    /// Those of the piece among values of the vertices of the whole.
+    pub fn of_vertices<T: Copy>(&self, of_whole: &[T]) -> Vec<T> {
         self.vertices.iter().map(|v| of_whole[v.at()]).collect()
     }
 

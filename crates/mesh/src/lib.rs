@@ -4,6 +4,7 @@
 //!   repaired on request.
 //! * [`TriMesh`]: half-edge connectivity of an oriented manifold, no geometry.
 //! * [`Metric`]: edge lengths and what follows from them: angles, areas, flat corners, curvature.
+//! * [`Geometry`]: positions, and the sizes of cells there, of which a metric is made.
 //! * [`features`]: edges that lines of a map should follow, and the curves they form.
 //! * [`coarse`]: a coarser mesh of nearly the same surface.
 //! * [`components`]: the connected pieces of a soup, each a mesh of its own.
@@ -16,6 +17,7 @@ pub mod coarse;
 pub mod components;
 pub mod features;
 mod flat;
+mod geometry;
 pub mod ids;
 mod mesh;
 mod metric;
@@ -24,6 +26,7 @@ pub mod soup;
 mod vector;
 
 pub use components::Component;
+pub use geometry::{Geometry, PieceGeometry, edge_scale};
 pub use ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
 pub use mesh::{MeshError, TriMesh};
 pub use metric::Metric;

@@ -94,12 +94,17 @@ impl Metric {
     /// coincident vertices come apart, while others keep their shapes almost ("intrinsic mollification", Sharp and
     /// Crane 2020).
     pub fn lengthened(&self, mesh: &TriMesh, by: f64) -> Self {
-        let mut length: HalfedgeData<f64> = self.length.iter().map(|l| l + by).collect();
+        Self { unit: self.unit, ..self.with_lengths(mesh, |h| self.length[h] + by) }
+    }
+
+    /// The metric with other lengths, equal on twins, in units of the new mean.
+    pub(crate) fn with_lengths(&self, mesh: &TriMesh, new: impl Fn(Halfedge) -> f64) -> Self {
+        let mut length: HalfedgeData<f64> = mesh.halfedges().map(new).collect();
         let mean = length.iter().sum::<f64>() / length.len() as f64;
         length.iter_mut().for_each(|l| *l /= mean);
         let flat =
             mesh.faces().map(|f| flat_from_lengths(f.halfedges().map(|h| length[h]))).collect();
-        Self::assemble(length, flat, self.unit)
+        Self::assemble(length, flat, self.unit * mean)
     }
 
     /// The metric in which triangles without area, and they alone, have some: their sides are longer by a small part of

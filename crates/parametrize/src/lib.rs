@@ -25,6 +25,7 @@ mod method;
 mod ordered;
 pub mod progress;
 pub mod quality;
+mod sizes;
 
 // The stages are private, but to the crates that build on them, to tests and to benches.
 #[cfg(not(feature = "internals"))]
@@ -81,3 +82,4 @@ pub use method::{
 pub use mixed_integer::{MixedIntegerOptions, MixedIntegerStats};
 pub use progress::{Observer, Progress, Stage};
 pub use rounding::{RoundingOptions, RoundingStrategy};
+pub use sizes::{SizeError, Sizing, sizes};

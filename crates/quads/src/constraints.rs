@@ -13,6 +13,15 @@ pub struct Constraints {
     pub fixed: Vec<u32>,
     /// Vertices that slide along curves.
     pub curves: Vec<SlideCurve>,
+    /// The sizes that quads are to have at the vertices, as multiples of one length; nothing if all are alike.
+    pub sizes: Vec<f64>,
+}
+
+impl Constraints {
+    /// The size at a vertex.
+    pub(crate) fn size(&self, v: u32) -> f64 {
+        self.sizes.get(v as usize).copied().unwrap_or(1.0)
+    }
 }
 
 /// A curve on a surface, such as a feature, and the vertices that do not leave it.
@@ -20,6 +29,8 @@ pub struct Constraints {
 pub struct SlideCurve {
     /// The corners of the curve in order; of a closed one, the first comes again. Without two, the vertices are fixed.
     pub points: Vec<[f64; 3]>,
+    /// The sizes that quads are to have at these; nothing if all are alike.
+    pub sizes: Vec<f64>,
     /// The vertices of the quad mesh on it, in any order; also those at its ends, which may be fixed.
     pub vertices: Vec<u32>,
 }
@@ -58,7 +69,7 @@ impl Domain {
         let mut curves = Vec::new();
         for curve in &constraints.curves {
             let mut place = Place::Fixed;
-            if let Some(curve) = Curve::new(&curve.points) {
+            if let Some(curve) = Curve::new(&curve.points, &curve.sizes) {
                 place = Place::OnCurve(curves.len() as u32);
                 curves.push(curve);
             }

@@ -4,7 +4,7 @@ use crate::{
     ExtractError, ExtractOptions, Extraction, QuadConnectivity, QuadFault, QuadFaults, extract,
 };
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Component, TriMesh};
+use seamstress_mesh::{Component, Geometry, TriMesh};
 use seamstress_parametrize::SeamlessMap;
 use seamstress_parametrize::progress::{Observer, Progress};
 use seamstress_quantize::{
@@ -58,9 +58,9 @@ pub type GoesOn<'a> = dyn FnMut(&QuantizationFailure) -> bool + 'a;
 ///
 /// # Errors
 /// [`ManifoldError`].
-pub fn manifold_quads(
+pub fn manifold_quads<'a>(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: impl Into<Geometry<'a>>,
     map: &SeamlessMap,
     aligned: &EdgeSet,
     options: &QuantizeOptions,
@@ -71,11 +71,11 @@ pub fn manifold_quads(
     // Rounding and the looks at its quads take turns.
     let observer = RefCell::new(observer);
     let observe = |progress| (observer.borrow_mut())(progress);
+    let geometry = geometry.into();
+    let positions = geometry.positions;
     let mut decisions = OfManifolds { positions, settings: &settings, observe, goes_on };
     let quantization =
-        quantize_deciding(mesh, positions, map, aligned, options, &mut decisions, &mut {
-            observe
-        })?;
+        quantize_deciding(mesh, geometry, map, aligned, options, &mut decisions, &mut { observe })?;
     let extraction =
         extract(mesh, positions, quantization.map.corner_uvs(), &settings, &mut { observe })?;
     let connectivity = extraction.mesh.connectivity().map_err(|faults| {

@@ -3,7 +3,7 @@
 use crate::constraints::{Constraints, Domain};
 use crate::moves::{Fair, Moves};
 use crate::surface::Surface;
-use crate::vector::{Point, add};
+use crate::vector::{Point, add, scale};
 use crate::{QuadConnectivity, QuadFaults, QuadMesh};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_parallel::prelude::*;
@@ -86,7 +86,10 @@ pub fn smooth(
     let mut refused = 0;
     for round in 0..options.rounds {
         watch.tick(f64::from(round) / f64::from(options.rounds))?;
-        let on_surface = |&v: &u32| domain.place(v, target(&connectivity, &moves.positions, v));
+        let on_surface = |&v: &u32| {
+            let size = |v: u32| options.constraints.size(v);
+            domain.place(v, target(&connectivity, &moves.positions, size, v))
+        };
         let targets: Vec<(Point, Point)> = movable.par_iter().map(on_surface).collect();
         refused =
             movable.iter().zip(targets).filter(|&(&v, to)| !moves.try_move(v, to, FAIR)).count();
@@ -94,12 +97,18 @@ pub fn smooth(
     Ok(Smoothed { mesh: QuadMesh::from_parts(moves.positions, mesh.quads().to_vec()), refused })
 }
 
-/// Where a vertex goes: towards the mean of its neighbours.
-fn target(connectivity: &QuadConnectivity, positions: &[Point], v: u32) -> Point {
+/// Where a vertex goes: towards the mean of its neighbours, which count less the longer the edges to them are to be.
+fn target(
+    connectivity: &QuadConnectivity,
+    positions: &[Point],
+    size: impl Fn(u32) -> f64,
+    v: u32,
+) -> Point {
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for n in connectivity.neighbours(v) {
-        sum = add(sum, positions[n as usize]);
-        count += 1.0;
+        let weight = 2.0 / (size(v) + size(n));
+        sum = add(sum, scale(positions[n as usize], weight));
+        count += weight;
     }
     let here = positions[v as usize];
     [0, 1, 2].map(|k| here[k] + STEP * (sum[k] / count - here[k]))
@@ -169,6 +178,26 @@ mod tests {
                 mesh = next;
             }
         }
+    }
+
+    #[test]
+    fn sizes_asked_for_are_kept() {
+        // Columns at 0, 1, 3 and 7 in a strip, as wide as asked for, but for the inner vertices: those are where they would be
+        // if all sizes were alike.
+        let row = |y: f64, inner: [f64; 2]| [0.0, inner[0], inner[1], 7.0].map(|x| [x, y, 0.0]);
+        let points = [row(0.0, [1.0, 3.0]), row(1.0, [1.4, 3.6]), row(2.0, [1.0, 3.0])].concat();
+        let quad = |k: u32| [k, k + 1, k + 5, k + 4];
+        let quads: Vec<[u32; 4]> = [0, 1, 2, 4, 5, 6].map(quad).to_vec();
+        let corners = vec![[0.0; 3], [7.0, 0.0, 0.0], [7.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        let mesh = QuadMesh::new(points, quads).unwrap();
+        // Neighbours are apart by the sum of these.
+        let sizes = [0.5, 0.5, 1.5, 2.5].repeat(3);
+        let constraints = Constraints { sizes, ..Constraints::default() };
+        let options = SmoothOptions { rounds: 100, constraints };
+        let surface = (&corners[..], &[[0, 1, 2], [0, 2, 3]][..]);
+        let smoothed = smooth(&mesh, surface, &options, &mut go_on).unwrap().mesh;
+        let inner = [5, 6].map(|v| smoothed.positions()[v]);
+        assert!(inner.iter().zip([1.0, 3.0]).all(|(p, x)| (p[0] - x).abs() < 0.01), "{inner:?}");
     }
 
     #[test]

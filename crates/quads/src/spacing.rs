@@ -96,7 +96,7 @@ struct Slider<'a> {
     goal: f64,
     /// The vertices before and after it along the curve.
     beside: [u32; 2],
-    /// The mean length of edges of the stretch.
+    /// The length that edges there would have if all of the stretch were even.
     edge: f64,
 }
 
@@ -137,15 +137,16 @@ impl Slider<'_> {
 /// The vertices of a stretch that have to slide, and where to; none if they are even enough.
 fn sliders<'a>(stretch: &'a Stretch<'a>) -> Vec<Slider<'a>> {
     let n = stretch.vertices.len() - 1;
-    let edge = stretch.edge();
     let vertex = |k: usize| stretch.vertices[k].0;
-    let places: Vec<f64> = stretch.vertices.iter().map(|&(_, at)| at).collect();
+    let curve = stretch.curve;
+    let places: Vec<f64> = stretch.vertices.iter().map(|&(_, at)| curve.count(at)).collect();
     let goals = evened(&places, stretch.is_loop).unwrap_or_default();
     let sliders = (0..n).zip(goals).skip(usize::from(!stretch.is_loop));
     let slider = |(k, goal)| {
         let before = if k == 0 { n - 1 } else { k - 1 };
         let beside = [vertex(before), vertex(k + 1)];
-        Slider { vertex: vertex(k), curve: stretch.curve, goal, beside, edge }
+        let goal = curve.parameter_of(goal);
+        Slider { vertex: vertex(k), curve, goal, beside, edge: stretch.edge_at(goal) }
     };
     sliders.map(slider).collect()
 }

@@ -17,17 +17,18 @@ pub(crate) struct Stretch<'a> {
 }
 
 impl Stretch<'_> {
-    /// The mean length of the edges.
-    pub(crate) fn edge(&self) -> f64 {
+    /// The length that an edge at an arc length would have if all were even.
+    pub(crate) fn edge_at(&self, parameter: f64) -> f64 {
         let n = self.vertices.len() - 1;
-        (self.vertices[n].1 - self.vertices[0].1) / n as f64
+        let count = self.curve.count(self.vertices[n].1) - self.curve.count(self.vertices[0].1);
+        self.curve.size(parameter) * count / n as f64
     }
 }
 
 /// The curves along which vertices slide, with the vertices.
 pub(crate) fn curves(constraints: &Constraints) -> Vec<(Curve, &[u32])> {
     let curves = constraints.curves.iter();
-    curves.filter_map(|c| Some((Curve::new(&c.points)?, c.vertices.as_slice()))).collect()
+    curves.filter_map(|c| Some((Curve::new(&c.points, &c.sizes)?, c.vertices.as_slice()))).collect()
 }
 
 /// All stretches with a vertex that can slide.

@@ -16,4 +16,14 @@ impl SurfacePoint {
         let corners = faces[self.face as usize].map(|v| positions[v as usize]);
         [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
     }
+
+    /// What values of the vertices are there.
+    pub fn interpolate(&self, values: &[f64], faces: &[[u32; 3]]) -> f64 {
+        self.weighted(faces[self.face as usize].map(|v| values[v as usize]))
+    }
+
+    /// The mean of values at the corners of the face.
+    pub(crate) fn weighted(&self, corners: [f64; 3]) -> f64 {
+        (0..3).map(|k| self.barycentric[k] * corners[k]).sum()
+    }
 }

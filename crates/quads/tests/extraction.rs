@@ -163,7 +163,7 @@ fn vertices_on_features_stay_on_their_curves() {
         let source = mesh_of(&map);
         let found = extracted(&map);
         let edges = sharp_edges(&source, &map.soup.positions, 1.0).vertex_pairs(&source);
-        let constraints = found.constraints(&source, &map.soup.positions, &edges);
+        let constraints = found.constraints(&source, (&map.soup.positions).into(), &edges);
         assert_eq!((constraints.fixed.len(), constraints.curves.len()), (n_nodes, n_curves));
         let at = |v: u32| found.mesh.positions()[v as usize];
         let quads = found.mesh.connectivity().unwrap();

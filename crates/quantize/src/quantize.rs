@@ -7,7 +7,7 @@ use crate::search::{ComponentSearch, Decisions, Placement};
 use crate::stats::QuantizationStats;
 use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Component, Face, Metric, TriMesh};
+use seamstress_mesh::{Component, Face, Geometry, TriMesh};
 use seamstress_parametrize::map::{AlignmentTolerance, SeamlessMap};
 use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
@@ -58,7 +58,7 @@ impl Quantization {
 /// Makes an integer-grid map that is close to a seamless map and takes its aligned edges to isolines at integers, so
 /// that the quads of its grid follow them.
 ///
-/// Positions are in any unit. Where cones are too close for the grid, a component gets a finer one; the
+/// Positions are in any unit, with or without sizes of cells. Where cones are too close for the grid, a component gets a finer one; the
 /// solution says so. A number of quads is met within a few percent if no component needed that.
 /// The observer is called in every iteration of every long loop and may break to cancel.
 ///
@@ -68,24 +68,24 @@ impl Quantization {
 /// # Source
 /// Levi 2021, suppl. sec. 8, for what must be integral and for [`crate::RoundingMethod::Greedy`];
 /// the constrained rounding is that of `docs/theory/08-integer-grid-maps.md`.
-pub fn quantize(
+pub fn quantize<'a>(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: impl Into<Geometry<'a>>,
     map: &SeamlessMap,
     aligned: &EdgeSet,
     options: &QuantizeOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Quantization, QuantizeError> {
-    quantize_deciding(mesh, positions, map, aligned, options, &mut (), observer)
+    quantize_deciding(mesh, geometry, map, aligned, options, &mut (), observer)
 }
 
 /// As [`quantize`], with a caller who accepts maps component by component, and may give up early.
 ///
 /// # Errors
 /// As [`quantize`]; [`QuantizationFailure::Refused`] if no map of a component was accepted.
-pub fn quantize_deciding(
+pub fn quantize_deciding<'a>(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: impl Into<Geometry<'a>>,
     map: &SeamlessMap,
     aligned: &EdgeSet,
     options: &QuantizeOptions,
@@ -93,8 +93,9 @@ pub fn quantize_deciding(
     observer: &mut Observer<'_>,
 ) -> Result<Quantization, QuantizeError> {
     let (corners, vertices, faces) = (map.corner_uvs().len(), mesh.n_vertices(), mesh.n_faces());
-    if positions.len() != vertices || corners != 3 * faces {
-        let positions = positions.len();
+    let geometry = geometry.into();
+    let positions = geometry.positions.len();
+    if positions != vertices || corners != 3 * faces {
         return Err(QuantizeError::Mismatch { positions, corners, vertices, faces });
     }
     let size = options.size.value();
@@ -106,7 +107,7 @@ pub fn quantize_deciding(
         .map_err(QuantizeError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };
-    all.read(positions, map, aligned, options)?;
+    all.read(geometry, map, aligned, options)?;
     let Sized { cell, placements, tried, .. } = all.meet(options.size)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
@@ -116,7 +117,7 @@ pub fn quantize_deciding(
         }
         stats.push(search.stats(placement));
     }
-    let metric = Metric::from_positions(mesh, positions);
+    let metric = geometry.metric(mesh);
     let before = distortion(mesh, &metric, map.corner_uvs());
     let after = distortion(mesh, &metric, &corner_uvs);
     let map = IntegerGridMap::certify_aligned(mesh, corner_uvs, &pairs, &options.tolerance)?;
@@ -166,15 +167,14 @@ impl<'p> Components<'p, '_, '_> {
     /// Reads all components.
     fn read(
         &mut self,
-        positions: &[[f64; 3]],
+        geometry: Geometry<'_>,
         map: &SeamlessMap,
         aligned: &EdgeSet,
         options: &'p QuantizeOptions,
     ) -> Result<(), QuantizeError> {
         self.searches = self.each(|all, k| {
             let piece = &all.pieces[k];
-            let positions = piece.positions(positions);
-            let metric = Metric::from_positions(&piece.mesh, &positions);
+            let metric = geometry.of_piece(piece).whole().metric(&piece.mesh);
             let uvs = piece.corner_uvs(map.corner_uvs());
             let map = SeamlessMap::certify(&piece.mesh, uvs, &options.given)?;
             let mut watch = Watch::new(all.observer, k, all.pieces.len());

@@ -37,7 +37,7 @@ impl Surface {
         ) -> Result<T, ManifoldError>,
     ) -> Result<(SeamlessStart, T), Error> {
         let (mesh, settings) = (self.mesh(), options.to_quantize());
-        let cell = settings.size.cell(self.metric().side());
+        let cell = settings.size.cell(self.cell_metric().side());
         let is_strict = options.map.features_strict;
         let mut given_up = Vec::new();
         let mut give_up = |edges: &EdgeSet| {
@@ -46,7 +46,7 @@ impl Surface {
         };
         let details = |edges: &EdgeSet| match is_strict {
             true => EdgeSet::new(mesh, []),
-            false => strips_and_slivers(mesh, self.positions(), self.metric(), edges, cell),
+            false => strips_and_slivers(mesh, self.positions(), self.cell_metric(), edges, cell),
         };
         let first = details(&asked.edges);
         give_up(&first);
@@ -92,7 +92,7 @@ impl Surface {
         let QuantizationFailure::TooCoarse { pairs, .. } = failure else {
             return EdgeSet::new(self.mesh(), []);
         };
-        let graph = FeatureGraph::new(self.mesh(), self.metric(), kept);
+        let graph = FeatureGraph::new(self.mesh(), self.cell_metric(), kept);
         let inside: Vec<&Curve> =
             graph.curves.iter().filter(|curve| curve.boundary_edges == 0).collect();
         let at = |pair: &[u32; 2]| {

@@ -11,6 +11,7 @@ use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
 use crate::parts::{PartReport, Selection};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
+use crate::sizes::SizeReport;
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_mesh::TriMesh;
@@ -52,6 +53,9 @@ pub struct IntegerMapReport {
     pub distortion_before: Distortion,
     /// Its own distortion.
     pub distortion: Distortion,
+    /// The sizes of cells asked for, if any were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<SizeReport>,
     /// Its cones.
     pub cones: ConeReport,
     /// Its seams.
@@ -254,7 +258,10 @@ impl Surface {
             &mut Watcher,
         ) -> Result<(SeamlessStart, Quantization), Error>,
     ) -> Result<IntegerGridMap, Error> {
-        let made = self.make_parts(asked, options.size, options.parts, |selection, size| {
+        let cell = options.size.to_quantize().cell(self.metric().side());
+        let sized = self.sized(asked, &options.map, cell)?;
+        let sized = sized.directed(&options.map.directions, cell)?;
+        let made = sized.make_parts(asked, options.size, options.parts, |selection, size| {
             let options = IntegerMapOptions { size, ..options.clone() };
             let (start, solution) = make(selection, &options, watcher)?;
             let surface = &selection.surface;
@@ -262,14 +269,15 @@ impl Surface {
                 .features
                 .map(|features| features.certified_in(surface.mesh(), solution.map.seamless()));
             let features = features.transpose().map_err(|v| surface.misaligned(&v))?;
+            let before = surface.distortion(start.map.corner_uvs());
             let uvs = solution.map.seamless().corner_uvs();
             let kept = features.as_ref().map_or(&[][..], |features| &features.kept);
             let empty = surface.components_without_cells(uvs, &edges_of(surface.mesh(), kept));
             let empty = selection.components_in_whole(&empty);
-            Ok((surface.clone(), solution, features, empty))
+            Ok((surface.clone(), (before, solution), features, empty))
         })?;
-        let ((surface, solution, features, empty), parts) = made;
-        Ok(surface.integer_grid_map(solution, features, (parts, empty), options))
+        let ((surface, made, features, empty), parts) = made;
+        Ok(surface.integer_grid_map(made, features, (parts, empty), options))
     }
 
     /// What a map that is given follows of the features asked for.
@@ -294,7 +302,7 @@ impl Surface {
         watcher: &mut Watcher,
     ) -> Result<SeamlessStart, Error> {
         let mut settings = options.map.to_method();
-        let edge_length = options.size.to_quantize().cell(self.metric().side());
+        let edge_length = options.size.to_quantize().cell(self.cell_metric().side());
         settings.purpose = method::Purpose::Quads { edge_length };
         let made = self.make_map(asked, &options.map, settings, watcher)?;
         Ok(SeamlessStart {
@@ -316,10 +324,9 @@ impl Surface {
         let mut observe = |progress| watcher.observe(progress);
         let settings = QuantizeOptions { given: start.tolerance, ..*settings };
         let mut decisions = AnyMap(goes_on);
-        let (mesh, positions) = (self.mesh(), self.positions());
         quantize_deciding(
-            mesh,
-            positions,
+            self.mesh(),
+            self.geometry(),
             &start.map,
             &kept,
             &settings,
@@ -374,7 +381,7 @@ impl Surface {
 
     fn integer_grid_map(
         &self,
-        solution: Quantization,
+        (before, solution): (Distortion, Quantization),
         features: Option<AlignedFeatures>,
         (parts, components_without_quads): (PartReport, Vec<u32>),
         options: &IntegerMapOptions,
@@ -386,8 +393,9 @@ impl Surface {
             input: self.report().clone(),
             parts,
             grid: GridReport::new(options.size, &solution),
-            distortion_before: Distortion::from(&solution.before),
-            distortion: Distortion::from(&solution.distortion),
+            distortion_before: before,
+            distortion: self.distortion(seamless.corner_uvs()),
+            sizes: self.size_report(seamless.corner_uvs(), solution.cell),
             cones: ConeReport::new(seamless.cones()),
             seams: SeamReport::new(seamless.seams()),
             certificate: seamless.certificate().clone(),

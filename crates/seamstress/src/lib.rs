@@ -55,6 +55,8 @@ mod certify;
 #[doc(hidden)]
 pub mod command_reports;
 mod context;
+mod direction_sources;
+mod directions;
 mod error;
 mod feature_edges;
 mod feature_sources;
@@ -87,12 +89,15 @@ mod refined;
 mod report;
 #[cfg(feature = "schema")]
 mod schema;
+mod size_sources;
+mod sizes;
 mod surface;
 #[doc(hidden)]
 pub mod words;
 
 pub use certify::{CertifyOptions, Measurements, Verdict};
 pub use context::{CancelToken, Context, Progress};
+pub use direction_sources::DirectionSource;
 pub use error::{Error, ErrorCategory, ErrorKind, FailedPart, Stage};
 pub use feature_sources::{FeatureSource, Features};
 pub use features::{FeatureCurve, FeatureCurves, FeatureNode, FeatureReport, FeatureSourceReport};
@@ -138,6 +143,8 @@ pub use report::{
 };
 #[cfg(feature = "schema")]
 pub use schema::schemas;
+pub use size_sources::SizeSource;
+pub use sizes::SizeReport;
 pub use surface::Surface;
 
 #[cfg(feature = "io")]

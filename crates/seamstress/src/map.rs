@@ -7,6 +7,7 @@ use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport};
 use crate::finding::{Elements, listing};
 use crate::options::MapOptions;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
+use crate::sizes::SizeReport;
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_mesh::Vertex;
@@ -48,6 +49,9 @@ pub struct MapReport {
     pub components: Vec<ComponentStats>,
     /// Its distortion.
     pub distortion: Distortion,
+    /// The sizes of cells asked for, if any were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<SizeReport>,
     /// Its cones.
     pub cones: ConeReport,
     /// Its seams.
@@ -106,6 +110,7 @@ impl SeamlessMap {
             input: surface.report().clone(),
             components,
             distortion,
+            sizes: surface.size_report(map.corner_uvs(), surface.texture_cell()),
             cones: ConeReport::new(map.cones()),
             seams: SeamReport::new(map.seams()),
             certificate: map.certificate().clone(),
@@ -124,7 +129,7 @@ impl<R> SeamlessMap<R> {
     ) -> Self {
         let corners = CornerUvs::new(surface.faces(), map.corner_uvs());
         let distortion = surface.distortion(map.corner_uvs());
-        Self { surface: surface.clone(), map, corners, features, distortion, report }
+        Self { surface: surface.without_wishes(), map, corners, features, distortion, report }
     }
 
     /// The surface it is of.
@@ -318,7 +323,8 @@ impl Surface {
         let options = &options.or_features(Features::none());
         let made = self.context().run(|watcher| {
             let asked = self.features(&options.features)?;
-            self.make_map(asked, options, options.to_method(), watcher)
+            let sized = self.prepared_for_textures(&asked, options)?;
+            sized.make_map(asked, options, options.to_method(), watcher)
         });
         made.map_err(|error| error.of(self.input()))
     }
@@ -333,7 +339,7 @@ impl Surface {
     ) -> Result<SeamlessMap, Error> {
         let mut observe = |progress| watcher.observe(progress);
         let solution =
-            make_aligned_map(self.mesh(), self.positions(), &asked.edges, &settings, &mut observe)
+            make_aligned_map(self.mesh(), self.geometry(), &asked.edges, &settings, &mut observe)
                 .map_err(|cause| self.no_map(&cause))?;
         let certify = || self.aligned(asked, &solution.map, &solution.released);
         let features = (!options.features.is_none()).then(certify).transpose()?;

@@ -1,13 +1,16 @@
 //! Options: what a user has a reason to change. One text each, for documentation, command line and JSON.
 
+use crate::direction_sources::DirectionSource;
 use crate::error::Error;
 use crate::feature_sources::{FeatureSource, Features};
 use crate::grid_size::GridSize;
 use crate::parts::PartOptions;
+use crate::size_sources::SizeSource;
 use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
 use seamstress_quantize as quantize;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::time::Duration;
 
 /// Options of [`Surface::parametrize`](crate::Surface::parametrize).
@@ -38,6 +41,45 @@ pub struct MapOptions {
     /// lines run around and along limbs and tubes [default: 0; for quads of a mesh 1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::share))]
     pub align: Option<f64>,
+
+    /// Directions to follow besides, wherever they can be, from one of these sources; may be given several times
+    ///
+    ///   strokes:FILE  polylines near the surface, the `l` elements of an OBJ file
+    ///   field:FILE    a .rawfield, or a .rosy with a vector per face
+    ///   SOURCE        edges as by `--features`, which need not be on lines
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SOURCE", verbatim_doc_comment))]
+    pub directions: Vec<DirectionSource>,
+
+    /// How much smaller cells are to be where the surface bends: 0 not at all, 1 so that all leave it equally far; there are
+    /// as many as without
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::share,
+        default_value_t = Self::default().adaptive))]
+    pub adaptive: f64,
+
+    /// Relative sizes of cells, from one of these sources; those of several are multiplied, and there are as many cells as
+    /// without
+    ///
+    ///   color:CHANNEL   of the vertices, red, green, blue or alpha: 0 stands for twice
+    ///                   the edge length, 1 for half of it
+    ///   property:NAME   of the vertices in PLY, in proportion to the edge length
+    ///   csv:FILE        such a number for every vertex, one a line
+    ///   features:X      edges X times as long at features, X at most 1
+    ///   boundary:X      the same at the boundary
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SOURCE", verbatim_doc_comment))]
+    pub sizes: Vec<SizeSource>,
+
+    /// The least edge length where sizes vary, in mesh units [default: a hundredth of the mean]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "L", value_parser = parse::positive))]
+    pub min_edge: Option<f64>,
+
+    /// The largest edge length where sizes vary, in mesh units [default: a hundred times the mean]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "L", value_parser = parse::positive))]
+    pub max_edge: Option<f64>,
+
+    /// How much edge lengths may grow from a cell to the next, as a share
+    #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::positive,
+        default_value_t = Self::default().size_growth))]
+    pub size_growth: f64,
 
     /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
@@ -85,6 +127,12 @@ impl Default for MapOptions {
             features_strict: false,
             corner_angle: method::MapOptions::default().corner_angle,
             align: None,
+            directions: Vec::new(),
+            adaptive: 0.0,
+            sizes: Vec::new(),
+            min_edge: None,
+            max_edge: None,
+            size_growth: 0.25,
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
@@ -135,6 +183,22 @@ impl MapOptions {
         if let Some(align) = self.align.filter(|align| !(0.0..=1.0).contains(align)) {
             return Err(Error::options(format!("align: {align} is not between 0 and 1")));
         }
+        if !(0.0..=1.0).contains(&self.adaptive) {
+            let text = format!("adaptive: {} is not between 0 and 1", self.adaptive);
+            return Err(Error::options(text));
+        }
+        let edges = [("min_edge", self.min_edge), ("max_edge", self.max_edge)];
+        let lengths = edges.into_iter().filter_map(|(name, edge)| Some((name, edge?)));
+        for (name, value) in lengths.chain([("size_growth", self.size_growth)]) {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Error::options(format!("{name}: {value} is no number larger than 0")));
+            }
+        }
+        if let (Some(least), Some(largest)) = (self.min_edge, self.max_edge)
+            && least > largest
+        {
+            return Err(Error::options(format!("min_edge: {least} is more than {largest}")));
+        }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;
@@ -144,6 +208,19 @@ impl MapOptions {
     /// The same with features chosen where that was left open.
     pub(crate) fn or_features(&self, default: Features) -> Self {
         self.clone().features(self.features.or(default))
+    }
+
+    /// The files that are read, other than that of the surface.
+    #[doc(hidden)]
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let features = self.features.sources().iter().filter_map(FeatureSource::file);
+        let directions = self.directions.iter().filter_map(DirectionSource::file);
+        features.chain(directions).chain(self.sizes.iter().filter_map(SizeSource::file))
+    }
+
+    /// Whether cells are to have different sizes.
+    pub(crate) fn has_sizes(&self) -> bool {
+        self.adaptive > 0.0 || !self.sizes.is_empty()
     }
 
     /// The same with the strength of alignment chosen where that was left open.
@@ -393,6 +470,13 @@ pub(crate) mod parse {
         match text.parse::<f64>() {
             Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
             _ => Err("expected a number, 0 or larger".into()),
+        }
+    }
+
+    pub(crate) fn positive(text: &str) -> Result<f64, String> {
+        match text.parse::<f64>() {
+            Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+            _ => Err("expected a number larger than 0".into()),
         }
     }
 

@@ -163,7 +163,7 @@ impl Surface {
 
     /// The components that are smaller than a cell.
     fn small_parts(&self, pieces: &[Component], size: GridSize) -> Vec<usize> {
-        let cell = size.to_quantize().cell(self.metric().side()) / self.metric().unit;
+        let cell = size.to_quantize().cell(self.cell_metric().side()) / self.cell_metric().unit;
         let is_small = |&k: &usize| {
             let fewest = match pieces[k].mesh.has_boundary() {
                 true => FEWEST_OPEN_CELLS,
@@ -175,7 +175,7 @@ impl Surface {
     }
 
     fn area(&self, piece: &Component) -> f64 {
-        piece.faces.iter().map(|&face| self.metric().area[face]).sum()
+        piece.faces.iter().map(|&face| self.cell_metric().area[face]).sum()
     }
 }
 

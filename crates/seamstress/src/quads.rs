@@ -11,6 +11,7 @@ use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::{PartReport, Selection};
 use crate::refined::Workpiece;
 use crate::report::{Distortion, SurfaceReport, VERSION};
+use crate::sizes::SizeReport;
 use crate::surface::Surface;
 #[cfg(feature = "io")]
 use crate::words::counted;
@@ -67,6 +68,9 @@ pub struct QuadMeshReport {
     /// Distortion of the integer-grid map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distortion: Option<Distortion>,
+    /// The sizes of cells asked for, and made, if any were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<SizeReport>,
     /// What was checked of its whole numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integer_certificate: Option<IntegerCertificate>,
@@ -311,6 +315,9 @@ struct PartQuads {
     finer: Option<usize>,
     /// Components without quads.
     empty: Vec<u32>,
+    /// Of the map, on the surface.
+    distortion: Distortion,
+    sizes: Option<SizeReport>,
 }
 
 impl Selection {
@@ -323,17 +330,17 @@ impl Selection {
     ) -> Result<PartQuads, Error> {
         let map = options.map.clone();
         let integer = IntegerMapOptions { size, map, ..IntegerMapOptions::default() };
-        let edge_length = size.to_quantize().cell(self.surface.metric().side());
-        let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length)?;
+        let edge_length = size.to_quantize().cell(self.surface.cell_metric().side());
+        let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length, &options.map)?;
         let surface = &work.surface;
-        let (mesh, positions) = (surface.mesh(), surface.positions());
+        let (mesh, geometry) = (surface.mesh(), surface.geometry());
         let round = |start: &SeamlessStart,
                      settings: &_,
                      goes_on: &mut GoesOn<'_>,
                      watcher: &mut Watcher| {
             let (map, kept) = (&start.map, start.kept(mesh));
             let mut observe = |progress| watcher.observe(progress);
-            manifold_quads(mesh, positions, map, &kept, settings, goes_on, &mut observe)
+            manifold_quads(mesh, geometry, map, &kept, settings, goes_on, &mut observe)
         };
         let (start, made) = surface.make_gridded(&work.curves, &integer, watcher, round)?;
         let ManifoldQuads { quantization: solution, mut extraction, connectivity, .. } = made;
@@ -342,12 +349,25 @@ impl Selection {
         let kept = features.as_ref().map_or(&[][..], |features| &features.kept);
         let shaped = surface.shape(&mut extraction, &options.shape, kept, watcher)?;
         surface.certify_quads(&extraction, Some(&solution.map))?;
+        let uvs = solution.map.seamless().corner_uvs();
+        let sizes = surface.quad_size_report(uvs, &extraction, solution.cell);
+        let distortion = surface.distortion(uvs);
         work.bring_back(&mut extraction)?;
         let empty = self.components_in_whole(&self.surface.components_without(&extraction.sources));
         self.bring_back(&mut extraction);
         let features = features.map(|f| self.report_in_whole(work.feature_report(&f)));
         let finer = work.n_triangles();
-        Ok(PartQuads { solution, extraction, connectivity, features, shaped, finer, empty })
+        Ok(PartQuads {
+            solution,
+            extraction,
+            connectivity,
+            features,
+            shaped,
+            finer,
+            empty,
+            distortion,
+            sizes,
+        })
     }
 }
 
@@ -369,23 +389,26 @@ impl Surface {
             &options.clone().map(options.map.or_features(Features::auto()).or_align(ALIGN));
         let made = self.context().run(|watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
+            let cell = options.size.to_quantize().cell(self.metric().side());
+            let sized = self.sized(&asked, &options.map, cell)?;
+            let sized = sized.directed(&options.map.directions, cell)?;
             let make = |selection: &Selection, size| selection.quads(size, options, watcher);
-            let (made, parts) = self.make_parts(&asked, options.size, options.parts, make)?;
-            let PartQuads { solution, extraction, connectivity, features, shaped, finer, empty } =
-                made;
+            let (made, parts) = sized.make_parts(&asked, options.size, options.parts, make)?;
+            let PartQuads { solution, extraction, connectivity, features, shaped, .. } = made;
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: Some(options.clone()),
                 input: self.report().clone(),
                 parts: Some(parts),
-                finer_triangles: finer,
+                finer_triangles: made.finer,
                 grid: Some(GridReport::new(options.size, &solution)),
-                distortion: Some(Distortion::from(&solution.distortion)),
+                distortion: Some(made.distortion),
+                sizes: made.sizes,
                 integer_certificate: Some(solution.map.certificate().clone()),
                 components: Some(solution.components),
                 map: ExtractedMap::new(&extraction),
                 features,
-                quads: QuadReport::new(empty, &extraction, Ok(&connectivity)),
+                quads: QuadReport::new(made.empty, &extraction, Ok(&connectivity)),
                 mended: Some(shaped.0),
                 orientation: Some(shaped.1),
             };
@@ -446,6 +469,7 @@ impl Surface {
                 finer_triangles: None,
                 grid: None,
                 distortion: None,
+                sizes: None,
                 integer_certificate: None,
                 components: None,
                 map,
@@ -507,7 +531,7 @@ impl Surface {
         watcher: &mut Watcher,
     ) -> Result<(Untangled, Orientation), Error> {
         watcher.enter(Stage::Shaping)?;
-        let constraints = extraction.constraints(self.mesh(), self.positions(), features);
+        let constraints = extraction.constraints(self.mesh(), self.geometry(), features);
         let surface = (self.positions(), self.faces());
         let failure = |cause: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {cause}"))

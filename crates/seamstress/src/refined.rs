@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of, ordered};
+use crate::options::MapOptions;
 use crate::surface::Surface;
 use seamstress_mesh::refine::{Refinement, refine};
 use seamstress_parametrize::ReleasedFeature;
@@ -37,8 +38,9 @@ impl Workpiece {
         surface: &Surface,
         curves: FeatureCurves,
         edge_length: f64,
+        options: &MapOptions,
     ) -> Result<Self, Error> {
-        let size = (EDGE * edge_length).max(surface.metric().side() / MOST_EDGES);
+        let size = (EDGE * edge_length).max(surface.cell_metric().side() / MOST_EDGES);
         let (mesh, positions) = (surface.mesh(), surface.positions());
         let Some(refinement) = refine(mesh, positions, &curves.edges, size) else {
             return Ok(Self { surface: surface.clone(), curves, refined: None });
@@ -50,7 +52,9 @@ impl Workpiece {
             features.iter().map(|piece| (ordered(piece.vertices), piece.source)).collect();
         let refined = Refined { surface: surface.clone(), curves: curves.clone(), feature_origin };
         let edges = edges_of(finer.mesh(), &pairs);
-        Ok(Self { curves: curves.on(&finer, edges), surface: finer, refined: Some(refined) })
+        let curves = curves.on(&finer, edges);
+        let surface = surface.sized_finer(finer, &curves, options, edge_length)?;
+        Ok(Self { surface, curves, refined: Some(refined) })
     }
 
     /// Triangles of the finer mesh, if there is one.

@@ -5,6 +5,7 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
+use crate::sizes::Sizes;
 use seamstress_mesh::attributes::Attributes;
 #[cfg(all(feature = "io", feature = "page"))]
 use seamstress_mesh::coarse::coarsen;
@@ -25,6 +26,9 @@ use std::sync::Arc;
 pub struct Surface {
     inner: Arc<Inner>,
     pub(crate) attributes: Arc<Attributes>,
+    pub(crate) sizes: Option<Arc<Sizes>>,
+    /// A direction to follow on each face, zero where there is none.
+    pub(crate) directions: Option<Arc<Vec<[f64; 3]>>>,
     context: Context,
 }
 
@@ -49,7 +53,8 @@ impl Inspection {
         })?;
         let metric = Metric::from_positions(&mesh, &soup.positions);
         let inner = Arc::new(Inner { parts, report, mesh, metric });
-        Ok(Surface { inner, attributes, context: Context::default() })
+        let context = Context::default();
+        Ok(Surface { inner, attributes, sizes: None, directions: None, context })
     }
 }
 
@@ -122,7 +127,9 @@ impl Surface {
         let vertices = (0..self.positions().len() as u32).map(|v| self.input_vertex(v));
         let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
         let soup = TriangleSoup { positions, faces };
-        self.remeshed(soup, vertices.collect(), face_origin.iter().map(origin).collect())
+        let finer =
+            self.remeshed(soup, vertices.collect(), face_origin.iter().map(origin).collect())?;
+        Ok(self.directed_part(finer, face_origin))
     }
 
     /// Some of its components, by the vertex and the face of this surface of each vertex and face.
@@ -138,7 +145,8 @@ impl Surface {
         };
         let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
         let vertex_origin = vertices.iter().map(|&v| self.input_vertex(v)).collect();
-        self.remeshed(soup, vertex_origin, faces.iter().map(origin).collect())
+        let part = self.remeshed(soup, vertex_origin, faces.iter().map(origin).collect())?;
+        Ok(self.directed_part(self.sized_part(part, vertices), faces))
     }
 
     /// A coarser mesh of nearly the same surface, of about so many triangles; vertices of `kept` stay.
@@ -179,7 +187,8 @@ impl Surface {
             ..Parts::default()
         };
         let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
-        Ok(Self { inner, attributes: Arc::default(), context: self.context.clone() })
+        let (attributes, context) = (Arc::default(), self.context.clone());
+        Ok(Self { inner, attributes, sizes: None, directions: None, context })
     }
 
     /// Positions, #V by 3, mesh units.

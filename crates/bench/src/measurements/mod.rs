@@ -12,6 +12,7 @@ mod objectives;
 mod quads;
 mod recovery;
 mod rounding;
+mod sizes;
 mod speed;
 
 use crate::compare;
@@ -32,6 +33,7 @@ pub enum Measurement {
     Features(features::Args),
     Integer(integer::Args),
     Quads(quads::Args),
+    Sizes(sizes::Args),
     Fields(fields::Args),
     Methods(methods::Args),
     Consistency(consistency::Args),
@@ -55,6 +57,7 @@ impl Measurement {
             Self::Features(args) => features::measure(args),
             Self::Integer(args) => integer::measure(args),
             Self::Quads(args) => quads::measure(args),
+            Self::Sizes(args) => sizes::measure(args),
             Self::Fields(args) => fields::measure(args),
             Self::Methods(args) => methods::measure(args),
             Self::Consistency(args) => consistency::measure(args),

@@ -112,7 +112,8 @@ impl Command for IntegerArgs {
         let mut files = map_pictures(self.pictures.as_ref());
         files.extend(reports(&self.report));
         files.extend(targets(Kind::Map, [&self.output]));
-        let given = self.map.as_deref().into_iter().chain(self.features.files());
+        let options = self.options();
+        let given = self.map.as_deref().into_iter().chain(options.map.files());
         Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
     }
 
@@ -167,6 +168,7 @@ impl Command for IntegerArgs {
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
         rows.push(row("grid", &report.grid.to_string()));
         rows.extend(summary::distortion_rows(&report.distortion));
+        rows.extend(report.sizes.iter().flat_map(summary::cell_size_rows));
         rows.extend(summary::certificate_rows(&report.cones, &report.certificate));
         let before = &report.distortion_before;
         let text = format!(

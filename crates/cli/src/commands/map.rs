@@ -102,7 +102,8 @@ impl Command for MapArgs {
         files.extend(targets(Kind::Cones, &self.sing));
         files.extend(reports(&self.report));
         files.extend(targets(Kind::Map, [&self.output]));
-        let given = self.method.start.files().chain(self.features.files());
+        let options = self.options();
+        let given = options.start.files().chain(options.map.files());
         Plan::new(&inputs(&self.mesh, given), self.pictures.as_deref(), files)
     }
 

@@ -84,7 +84,7 @@ impl Command for QuadArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        self.files.plan(&self.mesh, self.features.files())
+        self.files.plan(&self.mesh, self.options().map.files())
     }
 
     fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {
@@ -121,6 +121,7 @@ impl Command for QuadArgs {
         }
         rows.extend(report.features.iter().flat_map(summary::aligned_rows));
         rows.extend(report.distortion.iter().flat_map(summary::distortion_rows));
+        rows.extend(report.sizes.iter().flat_map(summary::cell_size_rows));
         rows.extend(summary::quad_rows(report));
         rows
     }

@@ -177,3 +177,14 @@ fn faults_name_their_line() {
     assert_eq!(fault("# nothing\n"), "a: the file has no vertices");
     assert_eq!(fault(POINTS), "a: the file has 3 vertices but no faces");
 }
+
+#[test]
+fn polylines_need_no_polygons() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 1 2 0\nl 1 2 3\nl -1 -3\n";
+    let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 2.0, 0.0]];
+    assert_eq!(crate::parse_segments(text, "s.obj").unwrap(), [[a, b], [b, c], [c, a]]);
+    let error = |text: &[u8]| crate::parse_segments(text, "s.obj").unwrap_err().to_string();
+    assert_eq!(error(b"v 0 0 0\nv 1 0 0\n"), "s.obj: the file has no `l` elements");
+    let range = error(b"v 0 0 0\nl 1 2\n");
+    assert!(range.starts_with("s.obj, line 2: vertex index 2 is out of range"), "{range}");
+}

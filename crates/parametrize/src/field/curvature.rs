@@ -1,4 +1,4 @@
-//! Principal directions of a surface, at a scale.
+//! Curvature of a surface, at a scale.
 
 use super::convert::{axes, cross, dot};
 use crate::cotangent::edge_weight;
@@ -10,20 +10,29 @@ use seamstress_mesh::{Face, FaceData, Halfedge, Metric, TriMesh};
 /// Entries of a symmetric tensor of space, by their places.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// Per face half the difference of the principal curvatures, as a number whose argument is twice the angle from the face's
-/// first edge to the direction of least curvature; in the units of the metric.
+/// How a face bends, in the units of the metric.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Curvature {
+    /// The mean of the principal curvatures.
+    pub(crate) mean: f64,
+    /// Half their difference, as a number whose argument is twice the angle from the face's first edge to the direction of
+    /// least curvature.
+    pub(crate) anisotropy: Complex64,
+}
+
+/// The curvature of every face.
 ///
 /// The curvature of an edge is its dihedral angle, along it (Cohen-Steiner and Morvan 2003); tensors are
 /// averaged over about `radius` by a step of diffusion.
 ///
 /// # Errors
 /// When the diffusion cannot be solved.
-pub(super) fn anisotropy(
+pub(crate) fn curvature(
     mesh: &TriMesh,
     positions: &[[f64; 3]],
     metric: &Metric,
     radius: f64,
-) -> Result<FaceData<Complex64>, NotPositiveDefinite> {
+) -> Result<FaceData<Curvature>, NotPositiveDefinite> {
     let n = mesh.n_vertices();
     let edge = |h: Halfedge| {
         let (a, b) = (positions[mesh.origin(h).at()], positions[mesh.tip(h).at()]);
@@ -60,7 +69,8 @@ pub(super) fn anisotropy(
             };
             ENTRIES.into_iter().enumerate().map(term).sum::<f64>()
         };
-        Complex64::new((form(x, x) - form(y, y)) / 2.0, form(x, y))
+        let (xx, yy) = (form(x, x), form(y, y));
+        Curvature { mean: (xx + yy) / 2.0, anisotropy: Complex64::new((xx - yy) / 2.0, form(x, y)) }
     };
     Ok(mesh.faces().map(of_face).collect())
 }

@@ -1,14 +1,15 @@
 //! Directions that a map is to follow.
 
+use super::convert::{axes, dot};
 use super::cross_field::rotations;
-use super::curvature::anisotropy;
+use super::curvature::curvature;
 use super::face_laplacian::FaceMatrix;
 use crate::cut::isometric::turning;
 use crate::features::Sectors;
 use crate::quarter::{direction, rotation};
 use num_complex::Complex64;
 use seamstress_linalg::NotPositiveDefinite;
-use seamstress_mesh::{Face, FaceData, Metric};
+use seamstress_mesh::{Face, FaceData, Geometry, Metric, TriMesh};
 
 /// Difference of the principal curvatures, times the length of a cell, at which directions count half.
 const HALF_ANISOTROPY: f64 = 0.15;
@@ -16,6 +17,8 @@ const HALF_ANISOTROPY: f64 = 0.15;
 const RADIUS: f64 = 0.5;
 /// The guide is smoothed over this part of a cell where directions count fully.
 const SMOOTHING: f64 = 0.5;
+/// What given directions count, against at most 1 for those of curvature.
+const GIVEN_WEIGHT: f64 = 5.0;
 /// What the directions of aligned edges count, against at most 1 for those of curvature.
 const ALIGNED_WEIGHT: f64 = 10.0;
 
@@ -36,39 +39,65 @@ impl Guide {
     ///
     /// Curvature is that of the slit surface: creases that are aligned bend nothing.
     /// Fourth powers of the directions are smoothed by one linear solve (after Knöppel et al. 2013); beside aligned
-    /// edges they are those of the edges.
+    /// edges they are those of the edges. Directions that are given count fully, whatever the strength.
     ///
     /// # Errors
     /// When a system cannot be solved.
-    pub fn along_curvature(
+    pub fn along_curvature<'a>(
         sectors: &Sectors<'_>,
-        positions: &[[f64; 3]],
+        geometry: impl Into<Geometry<'a>>,
         metric: &Metric,
         cell: f64,
         strength: f64,
     ) -> Result<Self, NotPositiveDefinite> {
         let slit = sectors.slit();
+        let geometry = geometry.into();
         let positions: Vec<[f64; 3]> =
-            slit.vertices().map(|s| positions[sectors.vertex(s).at()]).collect();
-        let bent = anisotropy(slit, &positions, metric, RADIUS * cell)?;
-        let certainty = |half: &Complex64| {
-            let a = 2.0 * half.norm() * cell;
+            slit.vertices().map(|s| geometry.positions[sectors.vertex(s).at()]).collect();
+        let bent = curvature(slit, &positions, metric, RADIUS * cell)?;
+        let bent: FaceData<Complex64> = bent.iter().map(|bent| bent.anisotropy).collect();
+        let certainty = |(f, half): (Face, &Complex64)| {
+            // Lengths of edges are those of the surface, areas count cells.
+            let size = geometry.size(slit.face_vertices(f).map(|s| sectors.vertex(s)));
+            let a = 2.0 * half.norm() * cell / size;
             a * a / (a * a + HALF_ANISOTROPY * HALF_ANISOTROPY)
         };
-        let mut weight: FaceData<f64> = bent.iter().map(certainty).collect();
+        let mut weight: FaceData<f64> = match strength > 0.0 {
+            true => bent.enumerate().map(certainty).collect(),
+            false => FaceData::filled(slit.n_faces(), 0.0),
+        };
         // What lays a direction along an axis is the rotation back.
         let back = |(half, weight): (&Complex64, &f64)| direction(*half).powi(2).conj() * *weight;
-        let mut pull: FaceData<Complex64> = bent.iter().zip(weight.iter()).map(back).collect();
         let mut stiffness = weight.clone();
+        let mut pull: FaceData<Complex64> = bent.iter().zip(weight.iter()).map(back).collect();
+        weight.iter_mut().for_each(|weight| *weight *= strength);
+        for (f, along) in given(slit, &positions, geometry.directions) {
+            pull[f] = GIVEN_WEIGHT * along.powi(4).conj();
+            stiffness[f] = GIVEN_WEIGHT;
+            weight[f] = 1.0;
+        }
         for h in sectors.aligned() {
             let along = Complex64::from_polar(1.0, -4.0 * turning(&metric.angle, h));
             pull[h.face()] += ALIGNED_WEIGHT * along;
             stiffness[h.face()] += ALIGNED_WEIGHT;
         }
         let rotation = smoothed(sectors, metric, &pull, &stiffness, SMOOTHING * cell)?;
-        weight.iter_mut().for_each(|weight| *weight *= strength);
         Ok(Self { rotation, weight, cell })
     }
+}
+
+/// The faces that a direction is given for, with it, seen from their first side.
+fn given<'a>(
+    slit: &'a TriMesh,
+    positions: &'a [[f64; 3]],
+    directions: Option<&'a [[f64; 3]]>,
+) -> impl Iterator<Item = (Face, Complex64)> + 'a {
+    let directions = directions.unwrap_or_default();
+    slit.faces().zip(directions).filter_map(|(f, &d)| {
+        let [x, y] = axes(slit, positions, f);
+        let flat = Complex64::new(dot(d, x), dot(d, y));
+        (flat != Complex64::ZERO).then(|| (f, direction(flat)))
+    })
 }
 
 /// Rotations, up to quarter turns, whose fourth powers `g` minimise `sum |g_right - c g_left|^2 + sum stiffness area / length^2
@@ -98,9 +127,7 @@ fn smoothed(
 
 #[cfg(test)]
 mod tests {
-    use super::super::convert::{axes, dot};
     use super::*;
-    use seamstress_mesh::TriMesh;
     use seamstress_mesh::features::EdgeSet;
     use seamstress_testkit as testkit;
 
@@ -120,6 +147,28 @@ mod tests {
             let off = ((guide.rotation[f] * direction).powi(4).arg() / 4.0).to_degrees();
             assert!(off.abs() < 3.0, "face {f:?} is off by {off} degrees");
             assert!(guide.weight[f] > 0.5);
+        }
+    }
+
+    #[test]
+    fn given_directions_are_followed_and_continued() {
+        let grid = testkit::disk_grid(16, 16);
+        let mesh = TriMesh::from_faces(grid.positions.len(), &grid.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &grid.positions);
+        let sectors = Sectors::unaligned(&mesh);
+        let (sin, cos) = 0.3f64.sin_cos();
+        let is_given = |f: Face| f.0 % 37 == 0;
+        let give = |f| if is_given(f) { [cos, sin, 0.0] } else { [0.0; 3] };
+        let directions: Vec<[f64; 3]> = mesh.faces().map(give).collect();
+        let geometry =
+            Geometry { directions: Some(&directions), ..Geometry::from(&grid.positions) };
+        let guide = Guide::along_curvature(&sectors, geometry, &metric, 1.0, 0.0).unwrap();
+        for f in mesh.faces() {
+            let [x, y] = axes(&mesh, &grid.positions, f);
+            let along = Complex64::new(dot([cos, sin, 0.0], x), dot([cos, sin, 0.0], y));
+            let off = ((guide.rotation[f] * along).powi(4).arg() / 4.0).abs();
+            assert!(off < 1e-6, "{off}");
+            assert_eq!(guide.weight[f], if is_given(f) { 1.0 } else { 0.0 });
         }
     }
 

@@ -16,10 +16,12 @@ mod lift;
 mod matched;
 mod prescription;
 mod smooth;
+mod strokes;
 mod transfer;
 
 pub use convert::{directions_in_space, frames_from_directions, matchings_from_rows};
 pub use cross_field::{CrossField, FieldError};
+pub(crate) use curvature::curvature;
 pub use extract::{ExtractError, extract, map_frames, map_indices};
 pub(crate) use frames_of_matchings::frames_of;
 pub use frames_of_matchings::{smooth_frames, spectral_frames};
@@ -30,4 +32,5 @@ pub use matched::{ResidualFieldError, matched_cut, residual_field};
 pub(crate) use prescription::check_angle;
 pub use prescription::{ConePrescription, PrescriptionError};
 pub use smooth::{SmoothStats, smooth_field};
+pub use strokes::{Stroke, along_strokes};
 pub use transfer::impose;

@@ -5,7 +5,7 @@ use super::domain::Domain;
 use super::{MapOptions, MethodError, Start, parametrize};
 use crate::progress::{Watch, unless_cancelled};
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Component, Metric};
+use seamstress_mesh::{Component, Geometry};
 
 /// Maps one component along its features and a guide; where that fails, or features are lost, without the guide, then with
 /// nothing aligned, and then in a metric without thin triangles.
@@ -14,17 +14,18 @@ use seamstress_mesh::{Component, Metric};
 /// [`MethodError`] of the last trial.
 pub(super) fn map_component(
     piece: &Component,
-    positions: &[[f64; 3]],
+    geometry: Geometry<'_>,
     start: &Start,
     features: &EdgeSet,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<ComponentMap, MethodError> {
     let mesh = &piece.mesh;
-    let positions = piece.positions(positions);
-    let metric = Metric::from_positions(mesh, &positions);
+    let geometry = geometry.of_piece(piece);
+    let geometry = geometry.whole();
+    let metric = geometry.metric(mesh);
     let features = features.restrict(piece);
-    let mut domain = Domain::new(mesh, &positions, &metric, features, options);
+    let mut domain = Domain::new(mesh, geometry, &metric, features, options);
     loop {
         match unless_cancelled(parametrize(domain.clone(), start, options, watch))? {
             // Features come before directions.

@@ -8,7 +8,7 @@ use crate::layout::exact::{Defects, ExactLayout};
 use crate::layout::ladder::SeamlessLayout;
 use num_complex::Complex64;
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Halfedge, Metric, TriMesh, VertexData};
+use seamstress_mesh::{Geometry, Halfedge, Metric, TriMesh, VertexData};
 
 /// Times that features near defects are dropped, each time with one more ring of faces, before all of them are: eight rings
 /// reach across most patches between features.
@@ -47,18 +47,18 @@ impl<'m> Domain<'m> {
     /// In the metric of the surface, along features as far as these do not contradict each other.
     pub(super) fn new(
         mesh: &'m TriMesh,
-        positions: &[[f64; 3]],
+        geometry: Geometry<'_>,
         surface: &'m Metric,
         features: EdgeSet,
         options: &MapOptions,
     ) -> Self {
         let largest_index = options.largest_index();
         let corners = options.corners(surface);
-        let (features, released) = drop_conflicts(mesh, positions, surface, features);
+        let (features, released) = drop_conflicts(mesh, geometry.positions, surface, features);
         let sectors = Sectors::with_corners(mesh, surface, &features, corners)
             .with_largest_index(largest_index);
         let metric = surface.opened(mesh).unwrap_or_else(|| surface.clone());
-        let guide = options.guide(&sectors, positions, &metric);
+        let guide = options.guide(&sectors, geometry, &metric);
         Self {
             sectors,
             surface,

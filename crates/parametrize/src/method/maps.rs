@@ -7,7 +7,7 @@ use super::{MapError, MapOptions, MapSolution, Start};
 use crate::progress::Observer;
 use crate::quality::distortion;
 use seamstress_mesh::features::EdgeSet;
-use seamstress_mesh::{Metric, TriMesh};
+use seamstress_mesh::{Geometry, TriMesh};
 
 /// Makes a seamless map of every component of a mesh, with nothing aligned; see [`make_aligned_map`].
 ///
@@ -24,7 +24,7 @@ pub fn make_map(
 
 /// Makes a seamless map of every component of a mesh in which feature edges run along the axes.
 ///
-/// Positions are in any unit; the UVs come out in the same unit, at the global scale of least symmetric
+/// Positions are in any unit, with or without sizes of cells; the UVs come out in the same unit, at the global scale of least symmetric
 /// Dirichlet energy, components side by side. The observer is called in every iteration of
 /// every long loop and may break to cancel.
 ///
@@ -36,14 +36,14 @@ pub fn make_map(
 ///
 /// # Source
 /// Levi 2021, supplement; the steps are those of `docs/theory`.
-pub fn make_aligned_map(
+pub fn make_aligned_map<'a>(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: impl Into<Geometry<'a>>,
     features: &EdgeSet,
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
-    run(mesh, positions, &Start::Mesh, features, options, observer)
+    run(mesh, geometry.into(), &Start::Mesh, features, options, observer)
 }
 
 /// Makes a seamless map from what the caller has: a cross field, or cones; otherwise as [`make_map`].
@@ -53,35 +53,35 @@ pub fn make_aligned_map(
 ///
 /// # Errors
 /// [`MapError`]; never an uncertified map.
-pub fn make_map_from(
+pub fn make_map_from<'a>(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: impl Into<Geometry<'a>>,
     start: &Start,
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
     start.check(mesh)?;
-    run(mesh, positions, start, &EdgeSet::new(mesh, []), options, observer)
+    run(mesh, geometry.into(), start, &EdgeSet::new(mesh, []), options, observer)
 }
 
 fn run(
     mesh: &TriMesh,
-    positions: &[[f64; 3]],
+    geometry: Geometry<'_>,
     start: &Start,
     features: &EdgeSet,
     options: &MapOptions,
     observer: &mut Observer<'_>,
 ) -> Result<MapSolution, MapError> {
     let mut tally = FeatureTally::default();
-    let (corner_uvs, components) = by_component(mesh, positions, observer, |piece, watch| {
-        let mapped =
-            map_component(piece, positions, &start.restrict(piece), features, options, watch)?;
-        tally.add(piece, &mapped.features, &mapped.released);
-        Ok((mapped.corner_uvs, mapped.stats))
-    })?;
+    let (corner_uvs, components) =
+        by_component(mesh, geometry.positions, observer, |piece, watch| {
+            let mapped =
+                map_component(piece, geometry, &start.restrict(piece), features, options, watch)?;
+            tally.add(piece, &mapped.features, &mapped.released);
+            Ok((mapped.corner_uvs, mapped.stats))
+        })?;
     let AlignedMap { map, features, alignment, released } =
         tally.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
-    let metric = Metric::from_positions(mesh, positions);
-    let distortion = distortion(mesh, &metric, map.corner_uvs());
+    let distortion = distortion(mesh, &geometry.metric(mesh), map.corner_uvs());
     Ok(MapSolution { map, distortion, features, alignment, released, components })
 }

@@ -6,7 +6,7 @@ use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::map::Tolerance;
 use crate::rounding::RoundingOptions;
-use seamstress_mesh::Metric;
+use seamstress_mesh::{Geometry, Metric};
 
 /// What a map is for, which decides what its cones may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -86,7 +86,7 @@ impl MapOptions {
     pub(super) fn guide(
         &self,
         sectors: &Sectors<'_>,
-        positions: &[[f64; 3]],
+        geometry: Geometry<'_>,
         metric: &Metric,
     ) -> Option<Guide> {
         let side = metric.total_area().sqrt();
@@ -96,9 +96,9 @@ impl MapOptions {
                 (edge_length / metric.unit).min(side / FEWEST_CELLS.sqrt())
             }
         };
-        let guide =
-            || Guide::along_curvature(sectors, positions, metric, cell, self.alignment).ok();
-        if self.alignment > 0.0 { guide() } else { None }
+        let guide = || Guide::along_curvature(sectors, geometry, metric, cell, self.alignment).ok();
+        let is_any = self.alignment > 0.0 || geometry.directions.is_some();
+        if is_any { guide() } else { None }
     }
 
     /// Largest index of a cone that is not prescribed, quarters.

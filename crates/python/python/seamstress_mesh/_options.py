@@ -44,6 +44,12 @@ class MapOptions(RunOptions, total=False):
     features_strict: bool
     corner_angle: float
     align: float | None
+    directions: str | Iterable[str]
+    adaptive: float
+    sizes: str | Iterable[str]
+    min_edge: float | None
+    max_edge: float | None
+    size_growth: float
     cone_bias: float
     cone_price: float | None
     corner_weight: float
@@ -106,6 +112,9 @@ def map_options(given: Mapping[str, Any]) -> dict[str, Any]:
     """The options of a map as the library has them, without those of the run."""
     options = known(given, MapOptions)
     settings = {name: value for name, value in options.items() if name not in (*_RUN, "align_boundary")}
+    for name in ("directions", "sizes"):
+        if isinstance(options.get(name), str):
+            settings[name] = [options[name]]
     settings["features"] = feature_sources(options.get("features"), options.get("align_boundary", False))
     return settings
 

@@ -3,7 +3,9 @@
 use super::{Extraction, SurfacePoint};
 use crate::constraints::{Constraints, SlideCurve};
 use seamstress_mesh::features::{EdgeSet, FeatureGraph};
-use seamstress_mesh::{Face, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_mesh::{
+    Face, Geometry, Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData,
+};
 use std::collections::HashSet;
 
 impl Extraction {
@@ -14,10 +16,11 @@ impl Extraction {
     pub fn constraints(
         &self,
         source: &TriMesh,
-        positions: &[[f64; 3]],
+        geometry: Geometry<'_>,
         edges: &[[u32; 2]],
     ) -> Constraints {
         let edges = named(source, edges).union(source, &EdgeSet::boundary(source));
+        let positions = geometry.positions;
         let metric = Metric::from_positions(source, positions);
         let graph = FeatureGraph::new(source, &metric, &edges);
         let mut ends = VertexData::filled(source.n_vertices(), Vec::new());
@@ -33,10 +36,22 @@ impl Extraction {
             curve.edges.iter().for_each(|&edge| curve_of[edge] = Some(c));
         }
 
-        let points = |vertices: &[Vertex]| vertices.iter().map(|v| positions[v.at()]).collect();
-        let empty = |points| SlideCurve { points, vertices: Vec::new() };
-        let curves = graph.curves.iter().map(|curve| empty(points(&curve.vertices))).collect();
-        let mut constraints = Constraints { fixed: Vec::new(), curves };
+        let empty = |vertices: &[Vertex]| SlideCurve {
+            points: vertices.iter().map(|v| positions[v.at()]).collect(),
+            sizes: geometry
+                .sizes
+                .map_or_else(Vec::new, |sizes| vertices.iter().map(|v| sizes[v.at()]).collect()),
+            vertices: Vec::new(),
+        };
+        let curves = graph.curves.iter().map(|curve| empty(&curve.vertices)).collect();
+        let sizes = geometry.sizes.map_or_else(Vec::new, |sizes| {
+            let size = |at: &SurfacePoint| {
+                let corners = source.face_vertices(Face(at.face)).map(|v| sizes[v.at()]);
+                at.weighted(corners)
+            };
+            self.sources.iter().map(size).collect()
+        });
+        let mut constraints = Constraints { fixed: Vec::new(), curves, sizes };
         for (v, at) in (0..).zip(&self.sources) {
             let edge = match Site::new(source, at) {
                 Site::Vertex(at) if !ends[at].is_empty() => {

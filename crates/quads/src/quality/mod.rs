@@ -10,7 +10,7 @@ pub use crate::split::split_polygons;
 pub use comparison::{Comparison, ComparisonError, compare};
 pub use distance::{Distance, DistanceError, SurfaceDistance, surface_distance};
 pub use orientation::{BadSurface, Orientation};
-pub use shape::{Angles, EdgeLengths, angle_deviations};
+pub use shape::{Angles, EdgeLengths, angle_deviations, edge_lengths};
 pub use topology::Topology;
 
 use crate::QuadMesh;

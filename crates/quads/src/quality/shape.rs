@@ -1,5 +1,6 @@
 //! Shape of polygons: angles and edge lengths.
 
+use crate::QuadMesh;
 use crate::split::corner_positions;
 use crate::vector::{cross, dot, norm, sub, unit, vector_area};
 use std::collections::BTreeSet;
@@ -119,6 +120,14 @@ impl EdgeLengths {
             variation: (variance / lengths.len() as f64).sqrt(),
         }
     }
+}
+
+/// The edge of a square with the area of each quad.
+pub fn edge_lengths(mesh: &QuadMesh) -> Vec<f64> {
+    let edge = |quad: &[u32; 4]| {
+        (0.5 * norm(vector_area(&quad.map(|v| mesh.positions()[v as usize])))).sqrt()
+    };
+    mesh.quads().iter().map(edge).collect()
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ fn untangle_within(
         domain: &domain,
         homes: &homes,
         sites: homes.par_iter().map(site).collect(),
-        sides: patch::side_lengths(&connectivity, mesh),
+        sides: patch::side_lengths(&connectivity, mesh, &options.constraints),
         curve_edges: patch::curve_edges(&stretches, homes.len()),
         improved: 0,
         moved: vec![0; homes.len()],

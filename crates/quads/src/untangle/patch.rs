@@ -1,6 +1,7 @@
 //! A quad to be improved, with those around it.
 
 use super::{Reach, Site, State};
+use crate::constraints::Constraints;
 use crate::stretch::Stretch;
 use crate::surface::distance_to_triangle;
 use crate::vector::{Point, norm, sub};
@@ -113,9 +114,9 @@ impl Tether {
 pub(super) fn curve_edges(stretches: &[Stretch<'_>], n_vertices: usize) -> Vec<Vec<CurveEdge>> {
     let mut starting = vec![Vec::new(); n_vertices];
     for stretch in stretches {
-        let length = stretch.edge();
         for pair in stretch.vertices.windows(2) {
             let ends = [pair[0].0, pair[1].0];
+            let length = stretch.edge_at(0.5 * (pair[0].1 + pair[1].1));
             starting[ends[0] as usize].push(CurveEdge { ends, length });
         }
     }
@@ -127,13 +128,20 @@ const AVERAGING_ROUNDS: usize = 4;
 
 /// For each quad the lengths that sides 0 and 2, and sides 1 and 3, should have: geometric means over its surroundings.
 ///
-/// A quad's own sides say nothing where it is tangled, and one length for all would ask stretched quads to be squares.
-pub(super) fn side_lengths(connectivity: &QuadConnectivity, mesh: &QuadMesh) -> Vec<[f64; 2]> {
+/// A quad's own sides say nothing where it is tangled, and one length for all would ask stretched quads to be squares. Lengths
+/// are counted in the sizes asked for.
+pub(super) fn side_lengths(
+    connectivity: &QuadConnectivity,
+    mesh: &QuadMesh,
+    constraints: &Constraints,
+) -> Vec<[f64; 2]> {
+    let size = |q: &[u32; 4]| q.map(|v| constraints.size(v)).iter().sum::<f64>() / 4.0;
     let logarithms = |q: &[u32; 4]| {
+        let size = size(q);
         let [a, b, c, d] = q.map(|v| mesh.positions()[v as usize]);
         let mean = |e: Point, f: Point| 0.5 * (norm(e) + norm(f));
         [mean(sub(a, b), sub(c, d)), mean(sub(b, c), sub(d, a))]
-            .map(|side| side.max(f64::MIN_POSITIVE).ln())
+            .map(|side| (side / size).max(f64::MIN_POSITIVE).ln())
     };
     let mut means: Vec<[f64; 2]> = mesh.quads().iter().map(logarithms).collect();
     for _ in 0..AVERAGING_ROUNDS {
@@ -152,5 +160,6 @@ pub(super) fn side_lengths(connectivity: &QuadConnectivity, mesh: &QuadMesh) -> 
         };
         means = (0..means.len()).map(mean).collect();
     }
-    means.into_iter().map(|sides| sides.map(f64::exp)).collect()
+    let lengths = |(sides, q): ([f64; 2], _)| sides.map(|side: f64| size(q) * side.exp());
+    means.into_iter().zip(mesh.quads()).map(lengths).collect()
 }

@@ -174,8 +174,8 @@ fn vertices_on_a_curve_slide_along_it() {
         // Past the next one.
         bad[middle as usize][0] += 0.3;
         let bad = QuadMesh::new(bad, quads.clone()).unwrap();
-        let curves = vec![SlideCurve { points, vertices: inner.clone() }];
-        let constraints = Constraints { fixed: ends.to_vec(), curves };
+        let curves = vec![SlideCurve { points, sizes: Vec::new(), vertices: inner.clone() }];
+        let constraints = Constraints { fixed: ends.to_vec(), curves, sizes: Vec::new() };
         let options = UntangleOptions { constraints, ..UntangleOptions::default() };
         let untangled = untangle(&bad, surface, &options, &mut go_on).unwrap().mesh;
         let after = angles(&untangled);
@@ -213,11 +213,12 @@ fn vertices_on_a_hole_become_even_and_the_hole_stays_round() {
     let closed = |row: usize| (0..=120).map(|k| points[120 * row + k % 120]).collect();
     let circle = |row: usize, first: u32| SlideCurve {
         points: closed(row),
+        sizes: Vec::new(),
         vertices: (first..first + 24).collect(),
     };
     let curves = vec![circle(0, 0), circle(1, 72)];
     for fixed in [vec![], vec![3, 75]] {
-        let constraints = Constraints { fixed, curves: curves.clone() };
+        let constraints = Constraints { fixed, curves: curves.clone(), sizes: Vec::new() };
         let mesh = QuadMesh::new(positions.clone(), quads.clone()).unwrap();
         let ratio = |mesh: &QuadMesh, first: usize| {
             let at = |k: usize| mesh.positions()[first + k % 24];
@@ -239,6 +240,41 @@ fn vertices_on_a_hole_become_even_and_the_hole_stays_round() {
         // No quad is slanted by more than the 30 degrees that evenness may cost.
         let after = angles(&even);
         assert!(after.min >= 59.9 && after.max <= 120.1, "{after:?}");
+    }
+}
+
+#[test]
+fn vertices_on_a_hole_take_the_sizes_asked_for() {
+    let turn = |n: usize| (0..n).map(move |k| std::f64::consts::TAU * k as f64 / n as f64);
+    let size = |p: Point| 1.0 + 0.6 * p[0] / norm(p);
+    let (points, faces) = ring(2, &turn(120).collect::<Vec<_>>());
+    let faces: Vec<[u32; 3]> =
+        faces.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    let (positions, quads) = ring(4, &turn(24).collect::<Vec<_>>());
+    let circle = |row: usize, first: u32| {
+        let points: Vec<Point> = (0..=120).map(|k| points[120 * row + k % 120]).collect();
+        let sizes = points.iter().map(|&p| size(p)).collect();
+        SlideCurve { points, sizes, vertices: (first..first + 24).collect() }
+    };
+    let sizes = positions.iter().map(|&p| size(p)).collect();
+    let curves = vec![circle(0, 0), circle(1, 72)];
+    let constraints = Constraints { fixed: Vec::new(), curves, sizes };
+    // Of edges counted in their sizes, the longest by the shortest.
+    let ratio = |mesh: &QuadMesh, first: usize| {
+        let at = |k: usize| mesh.positions()[first + k % 24];
+        let count =
+            |k| norm(sub(at(k), at(k + 1))) * 0.5 * (1.0 / size(at(k)) + 1.0 / size(at(k + 1)));
+        let counts: Vec<f64> = (0..24).map(count).collect();
+        counts.iter().copied().fold(0.0, f64::max)
+            / counts.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let mesh = QuadMesh::new(positions, quads).unwrap();
+    let options =
+        UntangleOptions { constraints: constraints.clone(), ..UntangleOptions::default() };
+    let spaced = untangle(&mesh, (&points, &faces), &options, &mut go_on).unwrap().mesh;
+    for first in [0, 72] {
+        let (before, after) = (ratio(&mesh, first), ratio(&spaced, first));
+        assert!(before > 3.5 && after < 2.3, "{before} {after}");
     }
 }
 

@@ -22,20 +22,18 @@ impl Surface {
             }
             let settings = options.to_method();
             let start = options.start.read(self)?;
+            let asked = self.features(&options.map.features)?;
+            let sized = self.prepared_for_textures(&asked, &options.map)?;
             if matches!(start, Start::Mesh) {
-                let made = self.make_map(
-                    self.features(&options.map.features)?,
-                    &options.map,
-                    settings,
-                    watcher,
-                )?;
+                let made = sized.make_map(asked, &options.map, settings, watcher)?;
                 return Ok(LaidOut::Certified(Box::new(made)));
             }
             let mut observe = |progress| watcher.observe(progress);
             let made =
-                make_map_from(self.mesh(), self.positions(), &start, &settings, &mut observe);
+                make_map_from(sized.mesh(), sized.geometry(), &start, &settings, &mut observe);
             let solution = made.map_err(|cause| self.no_map(&cause))?;
-            let map = SeamlessMap::new(self, solution.map, None, &options.map, solution.components);
+            let map =
+                SeamlessMap::new(&sized, solution.map, None, &options.map, solution.components);
             Ok(LaidOut::Certified(Box::new(map)))
         });
         made.map_err(|error| error.of(self.input()))

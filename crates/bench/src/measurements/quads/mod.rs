@@ -138,7 +138,7 @@ fn measure_mesh(name: &str, mesh: &Mesh, asked: f64, args: &Args) -> Result<Row,
     let counts = check::count(extraction.mesh.quads())?;
     let (made, quads) = (extraction.mesh.positions(), extraction.mesh.quads());
     let mut faults = check::faults(mesh, integer.seamless(), made, quads, &counts);
-    let constraints = extraction.constraints(&mesh.connectivity, positions, &[]);
+    let constraints = extraction.constraints(&mesh.connectivity, positions.into(), &[]);
     let quads = match args.raw {
         true => extraction.mesh,
         false => untangled(&extraction.mesh, source, &constraints)?,
