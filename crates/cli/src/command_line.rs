@@ -121,7 +121,7 @@ const RARE: [&str; 21] = [
     "corner_angle",
     "directions",
     "sizes",
-    "smooth",
+    "partial",
     "min_edge",
     "max_edge",
     "size_growth",

@@ -11,6 +11,7 @@ use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Geometry, Metric};
 use seamstress_parametrize::{SizeError, Sizing, quality, sizes};
+use seamstress_quads::extract::SurfacePoint;
 use seamstress_quads::quality::edge_lengths;
 use seamstress_quads::{Extraction, locate};
 use serde::Serialize;
@@ -282,11 +283,10 @@ impl Surface {
     ) -> Option<SizeReport> {
         let report = self.size_report(corner_uvs, cell)?;
         let sizes = self.sizes.as_deref()?;
-        let asked: Vec<f64> = extraction
-            .sources
-            .iter()
-            .map(|at| cell * at.interpolate(&sizes.factors, self.faces()))
-            .collect();
+        // Between vertices the inverse is linear, as in the lengths of edges.
+        let inverse: Vec<f64> = sizes.factors.iter().map(|size| 1.0 / size).collect();
+        let asked = |at: &SurfacePoint| cell / at.interpolate(&inverse, self.faces());
+        let asked: Vec<f64> = extraction.sources.iter().map(asked).collect();
         let ratio = |(quad, made): (&[u32; 4], f64)| {
             let asked = quad.map(|v| asked[v as usize]).iter().sum::<f64>() / 4.0;
             made / asked
