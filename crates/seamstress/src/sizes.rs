@@ -5,7 +5,7 @@ use crate::features::FeatureCurves;
 use crate::options::MapOptions;
 use crate::report::Distortion;
 use crate::size_sources::SizeSource;
-use crate::surface::Surface;
+use crate::surface::{Sizes, Surface};
 use crate::words::rounded;
 use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_mesh::features::EdgeSet;
@@ -21,17 +21,6 @@ use std::sync::Arc;
 const BOUNDS: [f64; 2] = [0.01, 100.0];
 /// A map has sizes as for so many cells along the side of a square with the area of the surface.
 const TEXTURE_CELLS: f64 = 50.0;
-
-/// The sizes of cells at the vertices of a surface.
-#[derive(Debug)]
-pub(crate) struct Sizes {
-    /// As sources have them, in proportion to edge lengths.
-    painted: Vec<f64>,
-    /// As multiples of the length of a cell.
-    pub(crate) factors: Vec<f64>,
-    /// The metric in which all cells are alike.
-    metric: Metric,
-}
 
 /// Sizes of cells asked for, and made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -5,7 +5,6 @@ use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::{Elements, Finding};
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
-use crate::sizes::Sizes;
 use seamstress_mesh::attributes::Attributes;
 #[cfg(all(feature = "io", feature = "page"))]
 use seamstress_mesh::coarse::coarsen;
@@ -30,6 +29,17 @@ pub struct Surface {
     /// A direction to follow on each face, zero where there is none.
     pub(crate) directions: Option<Arc<Vec<[f64; 3]>>>,
     context: Context,
+}
+
+/// The sizes of cells at the vertices of a surface.
+#[derive(Debug)]
+pub(crate) struct Sizes {
+    /// As sources have them, in proportion to edge lengths.
+    pub(crate) painted: Vec<f64>,
+    /// As multiples of the length of a cell.
+    pub(crate) factors: Vec<f64>,
+    /// The metric in which all cells are alike.
+    pub(crate) metric: Metric,
 }
 
 struct Inner {
