@@ -52,7 +52,7 @@ pub(crate) struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Chosen {
-    Map(MapArgs),
+    Map(Box<MapArgs>),
     Quad(QuadArgs),
     Integer(IntegerArgs),
     Check(CheckArgs),
@@ -82,7 +82,7 @@ enum Chosen {
 
 #[derive(Debug, Subcommand)]
 enum Lab {
-    Map(MapArgs),
+    Map(Box<MapArgs>),
     #[command(name = "optimize", alias = "layout")]
     Optimize(OptimizeArgs),
     Field(FieldArgs),
@@ -157,7 +157,7 @@ impl CommandLine {
     /// Runs the command.
     pub(crate) fn run(&self) -> Result<Status, Failure> {
         match &self.command {
-            Chosen::Map(args) | Chosen::Lab(Lab::Map(args)) => command::run(args),
+            Chosen::Map(args) | Chosen::Lab(Lab::Map(args)) => command::run(args.as_ref()),
             Chosen::Quad(args) => command::run(args),
             Chosen::Integer(args) => command::run(args),
             Chosen::Check(args) => command::run(args),
