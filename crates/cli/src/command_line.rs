@@ -115,7 +115,7 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 21] = [
+const RARE: [&str; 22] = [
     "uv_set",
     "raw",
     "corner_angle",
@@ -125,6 +125,7 @@ const RARE: [&str; 21] = [
     "min_edge",
     "max_edge",
     "size_growth",
+    "cone_bias",
     "cone_price",
     "angle",
     "shift",
@@ -148,9 +149,11 @@ pub(crate) fn definition() -> clap::Command {
         name if RARE.contains(&name) => arg.hide_short_help(true).help_heading(RARE_HEADING),
         _ => arg,
     };
-    EVERYDAY.into_iter().fold(CommandLine::command(), |all, name| {
+    let all = EVERYDAY.into_iter().fold(CommandLine::command(), |all, name| {
         all.mut_subcommand(name, |command| command.mut_args(put_away))
-    })
+    });
+    // Integer-grid maps cannot be made symmetric; quads can.
+    all.mut_subcommand("integer", |command| command.mut_arg("symmetry", |arg| arg.hide(true)))
 }
 
 impl CommandLine {

@@ -5,7 +5,7 @@ use crate::text::{as_options, counted, listing, rounded, row};
 use seamstress::{
     Alignment, Certificate, ComponentStats, ConeReport, Distortion, FailedPart, FeatureReport,
     IntegerCertificate, MapReport, Measure, Measurement, MixedIntegerStats, Orientation,
-    PartReport, QuadMeshReport, QualityReport, SizeReport, SurfaceReport,
+    PartReport, QuadMeshReport, QualityReport, SizeReport, SurfaceReport, SymmetryReport,
 };
 
 /// Dropped features that are listed; the report has them all.
@@ -56,6 +56,20 @@ pub(crate) fn size_rows(report: &SurfaceReport) -> Option<String> {
         text += &format!(", smallest angle {} degrees", rounded(angle.to_degrees()));
     }
     Some(row("shape", &text))
+}
+
+/// The planes of symmetry.
+pub(crate) fn symmetry_rows(report: &SymmetryReport) -> Vec<String> {
+    let planes = report.planes.iter().map(|plane| {
+        let what = if plane.of_polygons { "polygons" } else { "shape" };
+        format!("{what} to {} at {plane}", rounded(plane.error))
+    });
+    let split = counted(report.split_triangles, "triangle");
+    let made =
+        format!("made on {}, with {split} split", counted(report.side_triangles, "triangle"));
+    let texts: Vec<String> = planes.chain([made]).collect();
+    let labels = ["symmetry"].into_iter().chain(std::iter::repeat(""));
+    labels.zip(&texts).map(|(label, text)| row(label, text)).collect()
 }
 
 /// The curves and corners of features, and where they come from.

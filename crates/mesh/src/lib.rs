@@ -8,6 +8,7 @@
 //! * [`features`]: edges that lines of a map should follow, and the curves they form.
 //! * [`coarse`]: a coarser mesh of nearly the same surface.
 //! * [`components`]: the connected pieces of a soup, each a mesh of its own.
+//! * [`symmetry`]: planes of symmetry and the side of a mesh over one.
 //! * [`attributes`]: what a mesh carries: values of vertices, corners and faces.
 //!
 //! Nothing here reads files, solves systems or prints.
@@ -23,6 +24,7 @@ mod mesh;
 mod metric;
 pub mod refine;
 pub mod soup;
+pub mod symmetry;
 mod vector;
 
 pub use components::Component;

@@ -3,6 +3,7 @@
 use crate::finding::{Elements, Finding};
 use crate::words::counted;
 use seamstress_parametrize::Stage as Step;
+use seamstress_quads::QuadFaults;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -95,6 +96,8 @@ pub enum ErrorKind {
     Options,
     /// The input is no surface: an oriented manifold of triangles.
     NotASurface,
+    /// The surface is not symmetric at a plane where it should be.
+    NotSymmetric,
     /// What is given as a map is no map of the surface, or not a seamless one.
     NotAMap,
     /// A source of features names what is not there.
@@ -149,6 +152,7 @@ impl ErrorKind {
             Self::Unwritable => "unwritable",
             Self::Options => "options",
             Self::NotASurface => "not-a-surface",
+            Self::NotSymmetric => "not-symmetric",
             Self::NotAMap => "not-a-map",
             Self::BadFeatures => "bad-features",
             Self::BadStart => "bad-start",
@@ -172,6 +176,7 @@ impl ErrorKind {
         match self {
             Self::Unreadable
             | Self::NotASurface
+            | Self::NotSymmetric
             | Self::NotAMap
             | Self::BadFeatures
             | Self::BadStart
@@ -230,6 +235,11 @@ impl Error {
         Self::new(ErrorKind::Cancelled, "stopped on request")
     }
 
+    pub(crate) fn no_manifold(faults: &QuadFaults) -> Self {
+        Self::new(ErrorKind::NotAManifold, format!("the quads are no manifold: {faults}"))
+            .at_stage(Some(Stage::Extraction))
+    }
+
     /// Names the input, unless it has a name already.
     pub(crate) fn of(mut self, input: Option<&str>) -> Self {
         if self.0.input.is_none() {
@@ -269,9 +279,7 @@ impl Error {
 
     /// With the numbers of failed parts replaced by those of the components that faces of the input are in.
     pub(crate) fn with_parts_numbered(mut self, component_of: &BTreeMap<u32, u32>) -> Self {
-        for part in &mut self.0.failed_parts {
-            part.component = component_of.get(&part.first_face).copied().unwrap_or(part.component);
-        }
+        self.0.failed_parts.iter_mut().for_each(|part| part.renumber(component_of));
         self
     }
 
@@ -383,6 +391,13 @@ pub struct FailedPart {
     pub elements: Elements,
     /// What may help.
     pub hint: Option<String>,
+}
+
+impl FailedPart {
+    /// Gives it the number of the component that its first face is of.
+    pub(crate) fn renumber(&mut self, component_of: &BTreeMap<u32, u32>) {
+        self.component = component_of.get(&self.first_face).copied().unwrap_or(self.component);
+    }
 }
 
 impl fmt::Display for FailedPart {

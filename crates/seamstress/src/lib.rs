@@ -75,6 +75,7 @@ mod integer;
 pub mod lab;
 mod map;
 mod mesh_format;
+mod mirrored;
 mod optimize;
 mod options;
 #[cfg(feature = "page")]
@@ -92,6 +93,8 @@ mod schema;
 mod size_sources;
 mod sizes;
 mod surface;
+mod symmetric;
+mod symmetry;
 #[doc(hidden)]
 pub mod words;
 
@@ -146,6 +149,7 @@ pub use schema::schemas;
 pub use size_sources::SizeSource;
 pub use sizes::SizeReport;
 pub use surface::Surface;
+pub use symmetry::{Symmetry, SymmetryPlane, SymmetryReport};
 
 #[cfg(feature = "io")]
 #[doc(hidden)]

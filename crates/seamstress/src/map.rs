@@ -9,6 +9,8 @@ use crate::options::MapOptions;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::sizes::SizeReport;
 use crate::surface::Surface;
+use crate::symmetric::Side;
+use crate::symmetry::{Symmetry, SymmetryReport};
 use crate::words::{counted, rounded};
 use seamstress_mesh::Vertex;
 #[cfg(feature = "io")]
@@ -58,6 +60,9 @@ pub struct MapReport {
     pub seams: SeamReport,
     /// What was checked of it.
     pub certificate: Certificate,
+    /// What made it symmetric, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<SymmetryReport>,
     /// The features asked for and what became of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub features: Option<FeatureReport>,
@@ -114,9 +119,15 @@ impl SeamlessMap {
             cones: ConeReport::new(map.cones()),
             seams: SeamReport::new(map.seams()),
             certificate: map.certificate().clone(),
+            symmetry: None,
             features: features.as_ref().map(|features| features.report.clone()),
         };
         Self::reported(surface, map, features, report)
+    }
+
+    pub(crate) fn with_symmetry(mut self, symmetry: SymmetryReport) -> Self {
+        self.report.symmetry = Some(symmetry);
+        self
     }
 }
 
@@ -324,9 +335,26 @@ impl Surface {
         let made = self.context().run(|watcher| {
             let asked = self.features(&options.features)?;
             let sized = self.prepared_for_textures(&asked, options)?;
-            sized.make_map(asked, options, options.to_method(), watcher)
+            sized.direct_map(asked, options, options.to_method(), watcher)
         });
         made.map_err(|error| error.of(self.input()))
+    }
+
+    /// The map by the direct method with these settings, aligned to these features; of one side and its images, where it
+    /// is to be symmetric.
+    pub(crate) fn direct_map(
+        &self,
+        asked: FeatureCurves,
+        options: &MapOptions,
+        settings: method::MapOptions,
+        watcher: &mut Watcher,
+    ) -> Result<SeamlessMap, Error> {
+        match Side::new(self, &asked, options.symmetry)? {
+            Some(side) => self.symmetric_map(&side, options, settings, watcher),
+            None => {
+                self.make_map(asked, &options.clone().symmetry(Symmetry::None), settings, watcher)
+            }
+        }
     }
 
     /// The map by the direct method with these settings, aligned to these features.
@@ -337,6 +365,7 @@ impl Surface {
         settings: method::MapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessMap, Error> {
+        options.symmetry.refuse()?;
         let mut observe = |progress| watcher.observe(progress);
         let solution =
             make_aligned_map(self.mesh(), self.geometry(), &asked.edges, &settings, &mut observe)
@@ -387,7 +416,7 @@ impl Surface {
     }
 
     /// Why there is no map along all features: what of each component could not be aligned.
-    fn no_strict_map(&self, released: &[ReleasedFeature]) -> Error {
+    pub(crate) fn no_strict_map(&self, released: &[ReleasedFeature]) -> Error {
         let (component_of, n_components) = self.mesh().connected_faces();
         let mut released_of = BTreeMap::<usize, Vec<ReleasedFeature>>::new();
         for feature in released {

@@ -6,6 +6,7 @@ use crate::feature_sources::{FeatureSource, Features};
 use crate::grid_size::GridSize;
 use crate::parts::PartOptions;
 use crate::size_sources::SizeSource;
+use crate::symmetry::Symmetry;
 use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
 use seamstress_quantize as quantize;
@@ -81,6 +82,13 @@ pub struct MapOptions {
         default_value_t = Self::default().size_growth))]
     pub size_growth: f64,
 
+    /// Planes at which the map or the quads are exactly symmetric: axes such as `x` or `xz`, for the planes across them
+    /// through the origin or the middle of the mesh; `auto`, those across axes at which the mesh is symmetric; or
+    /// `plane:NX,NY,NZ,D`. One side is made, and mirrored; a mesh that is not symmetric there is refused; for a map its
+    /// triangles must be, too
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PLANES", default_value_t))]
+    pub symmetry: Symmetry,
+
     /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
         default_value_t = Self::default().cone_bias))]
@@ -133,6 +141,7 @@ impl Default for MapOptions {
             min_edge: None,
             max_edge: None,
             size_growth: 0.25,
+            symmetry: Symmetry::None,
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
@@ -148,6 +157,12 @@ impl MapOptions {
     /// Sets the features.
     pub fn features(mut self, features: Features) -> Self {
         self.features = features;
+        self
+    }
+
+    /// Sets the planes of symmetry.
+    pub fn symmetry(mut self, symmetry: Symmetry) -> Self {
+        self.symmetry = symmetry;
         self
     }
 
@@ -198,6 +213,10 @@ impl MapOptions {
             && least > largest
         {
             return Err(Error::options(format!("min_edge: {least} is more than {largest}")));
+        }
+        if self.symmetry != Symmetry::None && (self.has_sizes() || !self.directions.is_empty()) {
+            let text = "symmetry: not together with sizes or directions";
+            return Err(Error::options(text));
         }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;

@@ -132,13 +132,7 @@ impl Surface {
             let text = "every part of the surface is smaller than a cell, and these are left out";
             return Err(Error::options(text).with_hint("ask for more quads"));
         }
-        // Finer meshes have components of other numbers, but the same faces of the input.
-        let mut component_of = BTreeMap::new();
-        for (k, piece) in pieces.iter().enumerate() {
-            for face in self.input_faces(piece) {
-                component_of.entry(face).or_insert(k as u32);
-            }
-        }
+        let component_of = self.component_of_input_faces();
         let area = |kept: &[usize]| kept.iter().map(|&k| self.area(&pieces[k])).sum::<f64>();
         let whole = area(&kept);
         loop {
@@ -159,6 +153,18 @@ impl Surface {
             report.failed.extend_from_slice(failed);
             kept = left;
         }
+    }
+
+    /// The component of each face of the input: other meshes of the surface have components of other numbers, but the same
+    /// faces of the input.
+    pub(crate) fn component_of_input_faces(&self) -> BTreeMap<u32, u32> {
+        let mut component_of = BTreeMap::new();
+        for (k, piece) in components(self.mesh()).unwrap_or_default().iter().enumerate() {
+            for face in self.input_faces(piece) {
+                component_of.entry(face).or_insert(k as u32);
+            }
+        }
+        component_of
     }
 
     /// The components that are smaller than a cell.

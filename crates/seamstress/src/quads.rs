@@ -13,6 +13,8 @@ use crate::refined::Workpiece;
 use crate::report::{Distortion, SurfaceReport, VERSION};
 use crate::sizes::SizeReport;
 use crate::surface::Surface;
+use crate::symmetric::Side;
+use crate::symmetry::{Symmetry, SymmetryReport};
 #[cfg(feature = "io")]
 use crate::words::counted;
 use seamstress_certify::Quads;
@@ -58,6 +60,9 @@ pub struct QuadMeshReport {
     /// Its connected parts that are small, and those that failed; none for a map that was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parts: Option<PartReport>,
+    /// What made them symmetric, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<SymmetryReport>,
     /// Triangles of the finer mesh of the same surface that quads were made on, where features lacked room or triangles
     /// area.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -305,30 +310,31 @@ impl QuadMesh {
 }
 
 /// The quads of some parts of a surface, placed on the whole.
-struct PartQuads {
-    solution: Quantization,
-    extraction: Extraction,
-    connectivity: QuadConnectivity,
-    features: Option<FeatureReport>,
-    shaped: (Untangled, Orientation),
+pub(crate) struct PartQuads {
+    pub(crate) solution: Quantization,
+    pub(crate) extraction: Extraction,
+    pub(crate) connectivity: QuadConnectivity,
+    pub(crate) features: Option<FeatureReport>,
+    pub(crate) shaped: (Untangled, Orientation),
     /// Triangles of the finer mesh, if there is one.
-    finer: Option<usize>,
+    pub(crate) finer: Option<usize>,
     /// Components without quads.
-    empty: Vec<u32>,
+    pub(crate) empty: Vec<u32>,
     /// Of the map, on the surface.
-    distortion: Distortion,
-    sizes: Option<SizeReport>,
+    pub(crate) distortion: Distortion,
+    pub(crate) sizes: Option<SizeReport>,
 }
 
 impl Selection {
     /// The quads of a selection of parts, of about a size.
-    fn quads(
+    pub(crate) fn quads(
         &self,
         size: GridSize,
         options: &QuadOptions,
         watcher: &mut Watcher,
     ) -> Result<PartQuads, Error> {
-        let map = options.map.clone();
+        // Images are made of the whole.
+        let map = options.map.clone().symmetry(Symmetry::None);
         let integer = IntegerMapOptions { size, map, ..IntegerMapOptions::default() };
         let edge_length = size.to_quantize().cell(self.surface.cell_metric().side());
         let work = Workpiece::new(&self.surface, self.curves.clone(), edge_length, &options.map)?;
@@ -392,16 +398,27 @@ impl Surface {
             let cell = options.size.to_quantize().cell(self.metric().side());
             let sized = self.sized(&asked, &options.map, cell)?;
             let sized = sized.directed(&options.map.directions, cell)?;
-            let make = |selection: &Selection, size| selection.quads(size, options, watcher);
-            let (made, parts) = sized.make_parts(&asked, options.size, options.parts, make)?;
+            let side = Side::new(&sized, &asked, options.map.symmetry)?;
+            let (made, parts) = match &side {
+                None => {
+                    let make =
+                        |selection: &Selection, size| selection.quads(size, options, watcher);
+                    sized.make_parts(&asked, options.size, options.parts, make)?
+                }
+                Some(side) => sized.symmetric_quads(side, options, watcher)?,
+            };
             let PartQuads { solution, extraction, connectivity, features, shaped, .. } = made;
             let report = QuadMeshReport {
                 seamstress: VERSION,
                 options: Some(options.clone()),
                 input: self.report().clone(),
                 parts: Some(parts),
+                symmetry: side.as_ref().map(Side::report),
                 finer_triangles: made.finer,
-                grid: Some(GridReport::new(options.size, &solution)),
+                grid: Some(GridReport {
+                    quads: extraction.uv_area,
+                    ..GridReport::new(options.size, &solution)
+                }),
                 distortion: Some(made.distortion),
                 sizes: made.sizes,
                 integer_certificate: Some(solution.map.certificate().clone()),
@@ -443,7 +460,7 @@ impl Surface {
             let connectivity = extraction.mesh.connectivity();
             if let (Err(faults), false) = (&connectivity, options.best_effort) {
                 return Err(
-                    no_manifold_of(faults).with_hint("`best_effort` writes them all the same")
+                    Error::no_manifold(faults).with_hint("`best_effort` writes them all the same")
                 );
             }
             let map = ExtractedMap::new(&extraction);
@@ -466,6 +483,7 @@ impl Surface {
                 options: None,
                 input: self.report().clone(),
                 parts: None,
+                symmetry: None,
                 finer_triangles: None,
                 grid: None,
                 distortion: None,
@@ -510,7 +528,7 @@ impl Surface {
     }
 
     /// The components that none of some points lies on.
-    fn components_without(&self, points: &[SurfacePoint]) -> Vec<u32> {
+    pub(crate) fn components_without(&self, points: &[SurfacePoint]) -> Vec<u32> {
         // Each of them has been a mesh as part of the whole.
         let components = components(self.mesh()).unwrap_or_default();
         let mut has_points = vec![false; self.faces().len()];
@@ -596,7 +614,7 @@ impl Surface {
         match cause {
             ManifoldError::Quantize(cause) => self.no_integer_map(&cause, options.rounding),
             ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),
-            ManifoldError::NoManifold { faults, faces } => no_manifold_of(&faults)
+            ManifoldError::NoManifold { faults, faces } => Error::no_manifold(&faults)
                 .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
                 .with_hint(FEWER_CONES),
             other => {
@@ -656,9 +674,4 @@ fn folded(what: &str, faces: &[u32]) -> String {
         n if n > LISTED => format!("\n  {n} {what} faces: {} ...", shown.join(", ")),
         n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
     }
-}
-
-fn no_manifold_of(faults: &QuadFaults) -> Error {
-    Error::new(ErrorKind::NotAManifold, format!("the quads are no manifold: {faults}"))
-        .at_stage(Some(Stage::Extraction))
 }

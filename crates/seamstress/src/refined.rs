@@ -6,6 +6,7 @@ use crate::options::MapOptions;
 use crate::surface::Surface;
 use seamstress_mesh::refine::{Refinement, refine};
 use seamstress_parametrize::ReleasedFeature;
+use seamstress_quads::extract::SurfacePoint;
 use seamstress_quads::{Extraction, locate};
 use std::collections::{BTreeMap, HashMap};
 
@@ -88,15 +89,27 @@ impl Workpiece {
         let Some(Refined { surface, .. }) = &self.refined else { return Ok(()) };
         let (positions, faces) = (self.surface.positions(), self.surface.faces());
         let points = extraction.sources.iter().map(|place| place.position(positions, faces));
-        let places = locate(surface.positions(), surface.faces(), points).map_err(|cause| {
-            Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {cause}"))
-                .at_stage(Some(Stage::Extraction))
-        })?;
-        extraction.sources = places;
+        extraction.sources = surface.places_of(points)?;
         let n_vertices = surface.positions().len() as u32;
         for cone in &mut extraction.cones {
             cone.source = cone.source.filter(|&vertex| vertex < n_vertices);
         }
         Ok(())
+    }
+}
+
+impl Surface {
+    /// The places on the surface nearest to points where quads have come from.
+    ///
+    /// # Errors
+    /// Where the surface cannot be searched.
+    pub(crate) fn places_of(
+        &self,
+        points: impl IntoIterator<Item = [f64; 3]>,
+    ) -> Result<Vec<SurfacePoint>, Error> {
+        locate(self.positions(), self.faces(), points.into_iter()).map_err(|cause| {
+            Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {cause}"))
+                .at_stage(Some(Stage::Extraction))
+        })
     }
 }

@@ -134,11 +134,9 @@ impl Surface {
         faces: Vec<[u32; 3]>,
         face_origin: &[u32],
     ) -> Result<Self, Error> {
-        let vertices = (0..self.positions().len() as u32).map(|v| self.input_vertex(v));
-        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
+        let vertices: Vec<u32> = (0..self.positions().len() as u32).collect();
         let soup = TriangleSoup { positions, faces };
-        let finer =
-            self.remeshed(soup, vertices.collect(), face_origin.iter().map(origin).collect())?;
+        let finer = self.remeshed(soup, &vertices, face_origin)?;
         Ok(self.directed_part(finer, face_origin))
     }
 
@@ -153,9 +151,7 @@ impl Surface {
             positions: vertices.iter().map(|&v| self.positions()[v as usize]).collect(),
             faces: faces.iter().map(corners).collect(),
         };
-        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
-        let vertex_origin = vertices.iter().map(|&v| self.input_vertex(v)).collect();
-        let part = self.remeshed(soup, vertex_origin, faces.iter().map(origin).collect())?;
+        let part = self.remeshed(soup, vertices, faces)?;
         Ok(self.directed_part(self.sized_part(part, vertices), faces))
     }
 
@@ -170,17 +166,19 @@ impl Surface {
             positions: coarse.vertices.iter().map(|&v| self.positions()[v as usize]).collect(),
             faces: coarse.faces,
         };
-        let origin = |&face: &u32| self.inner.parts.face_origin[face as usize];
-        let vertex_origin = coarse.vertices.iter().map(|&v| self.input_vertex(v)).collect();
-        self.remeshed(soup, vertex_origin, coarse.face_origin.iter().map(origin).collect())
+        self.remeshed(soup, &coarse.vertices, &coarse.face_origin)
     }
 
-    /// Another mesh in place of this one, with where its vertices and faces come from in the input.
-    fn remeshed(
+    /// Another mesh of the surface or a part of it, by the vertices of this one that its first vertices are, and the
+    /// faces of this one that its faces lie in.
+    ///
+    /// # Errors
+    /// A fault of this program.
+    pub(crate) fn remeshed(
         &self,
         soup: TriangleSoup,
-        vertex_origin: Option<Vec<u32>>,
-        face_origin: Vec<u32>,
+        vertices: &[u32],
+        faces: &[u32],
     ) -> Result<Self, Error> {
         let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).map_err(|cause| {
             let text = format!("another mesh of the surface is none: {cause}");
@@ -191,8 +189,8 @@ impl Surface {
         let parts = Parts {
             input: of_input.input.clone(),
             n_input_vertices: of_input.n_input_vertices,
-            vertex_origin,
-            face_origin,
+            vertex_origin: vertices.iter().map(|&v| self.input_vertex(v)).collect(),
+            face_origin: faces.iter().map(|&face| of_input.face_origin[face as usize]).collect(),
             soup,
             ..Parts::default()
         };

@@ -170,6 +170,7 @@ impl Command for MapArgs {
             }
         };
         let mut rows = summary::surface_rows(&map.input);
+        rows.extend(map.symmetry.iter().flat_map(summary::symmetry_rows));
         rows.extend(map.features.iter().flat_map(summary::feature_rows));
         rows.extend(summary::map_rows(map));
         rows.extend(summary::mixed_integer_rows(&map.components));

@@ -114,6 +114,7 @@ impl Command for QuadArgs {
         let report = quads.report();
         let mut rows = summary::surface_rows(&report.input);
         rows.extend(report.parts.iter().flat_map(summary::part_rows));
+        rows.extend(report.symmetry.iter().flat_map(summary::symmetry_rows));
         rows.extend(report.features.iter().flat_map(summary::feature_rows));
         rows.extend(report.grid.iter().map(|grid| row("grid", &grid.to_string())));
         if report.features.is_some() {

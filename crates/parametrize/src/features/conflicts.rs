@@ -25,6 +25,8 @@ pub enum ReleaseReason {
     NotInMap,
     /// Lines of the grid asked for would meet there that have to stay apart.
     Crowded,
+    /// Quads are symmetric, and no feature is at its image on the side that was made.
+    OneSided,
 }
 
 impl std::fmt::Display for ReleaseReason {
@@ -36,6 +38,7 @@ impl std::fmt::Display for ReleaseReason {
             Self::NoLayout => "no layout near it",
             Self::NotInMap => "the map given does not follow it",
             Self::Crowded => "too close to others for the grid",
+            Self::OneSided => "no feature at its image on the side that was made",
         })
     }
 }

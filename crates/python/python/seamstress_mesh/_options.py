@@ -50,6 +50,7 @@ class MapOptions(RunOptions, total=False):
     min_edge: float | None
     max_edge: float | None
     size_growth: float
+    symmetry: str
     cone_bias: float
     cone_price: float | None
     corner_weight: float

@@ -18,6 +18,7 @@ impl Surface {
         options.validate().map_err(|error| error.of(self.input()))?;
         let made = self.context().run(|watcher| {
             if options.start.is_baseline() {
+                options.map.symmetry.refuse()?;
                 return self.lay_out_field(options, watcher);
             }
             let settings = options.to_method();
@@ -25,9 +26,10 @@ impl Surface {
             let asked = self.features(&options.map.features)?;
             let sized = self.prepared_for_textures(&asked, &options.map)?;
             if matches!(start, Start::Mesh) {
-                let made = sized.make_map(asked, &options.map, settings, watcher)?;
+                let made = sized.direct_map(asked, &options.map, settings, watcher)?;
                 return Ok(LaidOut::Certified(Box::new(made)));
             }
+            options.map.symmetry.refuse()?;
             let mut observe = |progress| watcher.observe(progress);
             let made =
                 make_map_from(sized.mesh(), sized.geometry(), &start, &settings, &mut observe);
