@@ -188,7 +188,7 @@ mod tests {
         let points = [row(0.0, [1.0, 3.0]), row(1.0, [1.4, 3.6]), row(2.0, [1.0, 3.0])].concat();
         let quad = |k: u32| [k, k + 1, k + 5, k + 4];
         let quads: Vec<[u32; 4]> = [0, 1, 2, 4, 5, 6].map(quad).to_vec();
-        let corners = vec![[0.0; 3], [7.0, 0.0, 0.0], [7.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        let corners = [[0.0; 3], [7.0, 0.0, 0.0], [7.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
         let mesh = QuadMesh::new(points, quads).unwrap();
         // Neighbours are apart by the sum of these.
         let sizes = [0.5, 0.5, 1.5, 2.5].repeat(3);

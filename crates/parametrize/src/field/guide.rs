@@ -157,7 +157,7 @@ mod tests {
         let metric = Metric::from_positions(&mesh, &grid.positions);
         let sectors = Sectors::unaligned(&mesh);
         let (sin, cos) = 0.3f64.sin_cos();
-        let is_given = |f: Face| f.0 % 37 == 0;
+        let is_given = |f: Face| f.0.is_multiple_of(37);
         let give = |f| if is_given(f) { [cos, sin, 0.0] } else { [0.0; 3] };
         let directions: Vec<[f64; 3]> = mesh.faces().map(give).collect();
         let geometry =
