@@ -1,7 +1,9 @@
 //! Directions that lines are to follow, on the triangles of a surface.
 
 use crate::direction_sources::DirectionSource;
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
+#[cfg(feature = "io")]
+use crate::error::ErrorKind;
 use crate::feature_edges::Namer;
 use crate::grid_size::GridSize;
 use crate::surface::Surface;
@@ -12,13 +14,14 @@ use seamstress_quads::locate;
 use std::sync::Arc;
 
 /// Points of a stroke that is drawn, along a cell.
+#[cfg(feature = "io")]
 const POINTS: f64 = 4.0;
 
 impl Surface {
     /// The same surface with the directions of some sources, for cells of a length.
     ///
     /// # Errors
-    /// [`ErrorKind::Unreadable`], [`ErrorKind::BadFeatures`], and [`ErrorKind::BadStart`] where a field does not fit.
+    /// `Unreadable`, `BadFeatures`, and `BadStart` where a field does not fit.
     pub(crate) fn directed(&self, sources: &[DirectionSource], cell: f64) -> Result<Self, Error> {
         if sources.is_empty() {
             return Ok(self.clone());
