@@ -1,5 +1,5 @@
 //! Quads that follow the directions of principal curvature.
-#![cfg(feature = "parallel")]
+#![cfg(all(feature = "io", feature = "parallel"))]
 #![allow(clippy::unwrap_used)]
 
 use seamstress::{DirectionSource, FeatureSource, Features, QuadMesh, QuadOptions, Surface};

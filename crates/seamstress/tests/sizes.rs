@@ -1,5 +1,5 @@
 //! Quads whose sizes vary over the surface.
-#![cfg(feature = "parallel")]
+#![cfg(all(feature = "io", feature = "parallel"))]
 #![allow(clippy::unwrap_used)]
 
 use seamstress::{
