@@ -1,7 +1,7 @@
 //! Directions that lines are to follow, as asked for.
 
+use crate::as_text::as_text;
 use crate::feature_sources::FeatureSource;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -52,31 +52,7 @@ impl fmt::Display for DirectionSource {
     }
 }
 
-impl Serialize for DirectionSource {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl<'de> Deserialize<'de> for DirectionSource {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for DirectionSource {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "DirectionSource".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": "string",
-            "description": "strokes:FILE, field:FILE or a source of features",
-        })
-    }
-}
+as_text!(DirectionSource, "strokes:FILE, field:FILE or a source of features");
 
 #[cfg(test)]
 mod tests {

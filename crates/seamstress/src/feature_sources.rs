@@ -1,5 +1,6 @@
 //! Features as asked for: sources of edges.
 
+use crate::as_text::as_text;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -101,31 +102,10 @@ impl fmt::Display for FeatureSource {
     }
 }
 
-impl Serialize for FeatureSource {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for FeatureSource {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "FeatureSource".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": "string",
-            "description": "auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B,C-D, pairs:FILE or sharp:FILE",
-        })
-    }
-}
-
-impl<'de> Deserialize<'de> for FeatureSource {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
+as_text!(
+    FeatureSource,
+    "auto, angle:DEGREES, boundary, lines, material, group, smoothing, uv-seams, edges:A-B,C-D, pairs:FILE or sharp:FILE"
+);
 
 /// Edges that a map, and quads, should follow: those of all sources.
 ///

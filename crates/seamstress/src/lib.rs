@@ -50,6 +50,7 @@
 //! | `schema` | | JSON schemas |
 //! | `clap` | | options as command-line arguments |
 
+mod as_text;
 mod attributes;
 mod certify;
 #[doc(hidden)]

@@ -1,6 +1,6 @@
 //! Sizes of cells as asked for: sources of relative edge lengths.
 
-use serde::{Deserialize, Serialize};
+use crate::as_text::as_text;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -74,28 +74,7 @@ impl fmt::Display for SizeSource {
     }
 }
 
-impl Serialize for SizeSource {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl<'de> Deserialize<'de> for SizeSource {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for SizeSource {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "SizeSource".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string", "description": FORMS })
-    }
-}
+as_text!(SizeSource, FORMS);
 
 #[cfg(test)]
 mod tests {

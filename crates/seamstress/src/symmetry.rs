@@ -1,12 +1,13 @@
 //! Planes of symmetry: which are asked for, and how far a surface is from them.
 
+use crate::as_text::as_text;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::surface::Surface;
 use crate::words::rounded;
 use seamstress_mesh::symmetry::{Mirror, images};
 use seamstress_quads::extract::SurfacePoint;
 use seamstress_quads::locate;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
@@ -116,31 +117,7 @@ impl fmt::Display for Symmetry {
     }
 }
 
-impl Serialize for Symmetry {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl<'de> Deserialize<'de> for Symmetry {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for Symmetry {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Symmetry".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": "string",
-            "description": "none, auto, axes such as x or xz, or plane:NX,NY,NZ,D",
-        })
-    }
-}
+as_text!(Symmetry, "none, auto, axes such as x or xz, or plane:NX,NY,NZ,D");
 
 impl fmt::Display for SymmetryPlane {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
