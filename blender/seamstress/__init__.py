@@ -2,7 +2,7 @@
 """Seamstress in Blender: certified seamless UV maps and quad meshes.
 
 `reading` makes arrays of meshes, `running` and `jobs` have them worked on in another process (`worker`), `remeshing`,
-`unwrapping` and `checking` are the operators, `carrying` and `symmetry` what becomes of the results.
+`unwrapping` and `checking` are the operators, `carrying` what becomes of what meshes carry.
 """
 
 from pathlib import Path

@@ -35,6 +35,7 @@ def draw_quads(layout: bpy.types.UILayout, held: Any) -> None:
     layout.prop(held, "target")
     layout.prop(held, {"FACES": "faces", "EDGE": "edge_length", "RATIO": "ratio"}[held.target])
     layout.row(heading="Symmetry").prop(held, "symmetry")
+    layout.prop(held, "align")
     layout.separator()
     draw_features(layout, held)
     layout.separator()

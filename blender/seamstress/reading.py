@@ -69,6 +69,11 @@ def linear_part(object: bpy.types.Object) -> np.ndarray:
     return linear
 
 
+def scale_part(object: bpy.types.Object) -> np.ndarray:
+    """What scales an object in the world along its own axes, (3, 3): planes across its axes stay such planes."""
+    return np.diag(np.linalg.norm(linear_part(object), axis=0))
+
+
 def require_own(*data: bpy.types.ID) -> None:
     """Raises ``Unfit`` if something that is to be changed belongs to another file."""
     for one in data:
@@ -150,8 +155,8 @@ def is_border(geometry: Geometry, labels: np.ndarray) -> np.ndarray:
     return lowest < highest
 
 
-def feature_sources(mesh: bpy.types.Mesh, geometry: Geometry, settings: Any, more: np.ndarray | None = None) -> list[str]:
-    """Sources of features as the library has them, with ``more`` edges, by settings as `settings.FeatureSettings`."""
+def feature_sources(mesh: bpy.types.Mesh, geometry: Geometry, settings: Any) -> list[str]:
+    """Sources of features as the library has them, by settings as `settings.FeatureSettings`."""
     sources = []
     if settings.creases == "AUTO":
         sources.append("auto")
@@ -160,8 +165,6 @@ def feature_sources(mesh: bpy.types.Mesh, geometry: Geometry, settings: Any, mor
     if settings.use_boundary:
         sources.append("boundary")
     is_marked = marked_edges(mesh, geometry, set(settings.marks))
-    if more is not None:
-        is_marked |= more
     if is_marked.any():
         sources.append("edges:" + ",".join(f"{a}-{b}" for a, b in geometry.edges[is_marked]))
     return sources

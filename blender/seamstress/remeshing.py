@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from bpy.app.translations import pgettext_rpt as rpt
 
-from . import carrying, reading, settings, symmetry
+from . import carrying, reading, settings
 from .carrying import Carried
 from .reading import Geometry, Unfit
 from .running import Running, Task, selected
@@ -44,18 +44,20 @@ attributes. Runs beside Blender; Esc stops it"""
         object = objects[0]
         if self.original == "REPLACE":
             reading.require_own(*objects)
-        axes = ["XYZ".index(axis) for axis in sorted(self.symmetry)]
-        linear = reading.linear_part(object)
-        with reading.mesh_of(context, object, self.use_modifiers) as whole, symmetry.side_of(whole, axes) as mesh:
-            if not whole.polygons:
+        axes = "".join(sorted(self.symmetry)).lower()
+        linear = reading.scale_part(object) if axes else reading.linear_part(object)
+        with reading.mesh_of(context, object, self.use_modifiers) as mesh:
+            if not mesh.polygons:
                 raise Unfit(rpt("{} has no faces").format(object.name))
             geometry = reading.read(mesh, linear)
             carried = carrying.gather(object, mesh) if self.use_attributes else Carried()
             options = {
-                "features": reading.feature_sources(mesh, geometry, self, symmetry.rim(geometry, axes)) or ["none"],
+                "features": reading.feature_sources(mesh, geometry, self) or ["none"],
+                "symmetry": axes or "none",
+                "align": self.align,
                 "smooth": self.smooth,
                 "cone_bias": self.cone_bias,
-                **self._size(len(whole.polygons), 2 ** len(axes)),
+                **self._size(len(mesh.polygons)),
             }
         arguments = {
             "mesh": geometry.arrays(),
@@ -68,15 +70,15 @@ attributes. Runs beside Blender; Esc stops it"""
 
         def finish(result: dict[str, Any]) -> str:
             found = [target.object() for target in targets]
-            return self._finish_objects(found, applies, geometry, carried, axes, result)
+            return self._finish_objects(found, applies, geometry, carried, result)
 
         return Task(object.name, "quads", arguments, finish)
 
-    def _size(self, faces: int, sides: int) -> dict[str, float]:
+    def _size(self, faces: int) -> dict[str, float]:
         if self.target == "EDGE":
             return {"edge_length": self.edge_length}
         quads = self.faces if self.target == "FACES" else faces * self.ratio
-        return {"quads": max(quads / sides, 1.0)}
+        return {"quads": max(quads, 1.0)}
 
     def _finish_objects(
         self,
@@ -84,35 +86,32 @@ attributes. Runs beside Blender; Esc stops it"""
         applies: bool,
         geometry: Geometry,
         carried: Carried,
-        axes: list[int],
         result: dict[str, Any],
     ) -> str:
         parts = [part.with_values(values) for part, values in zip(carried.parts, result["values"])]
         positions = geometry.to_object(result["vertices"])
-        made = symmetry.Quads(positions, result["quads"], replace(carried, parts=parts), np.arange(len(positions)))
-        for axis in axes:
-            made = symmetry.mirrored(made, axis)
+        made = replace(carried, parts=parts)
         old = objects[0].data
         has_keys = old.shape_keys is not None
         mesh = bpy.data.meshes.new(old.name)
-        mesh.from_pydata(made.positions, [], made.faces, shade_flat=not self.use_attributes)
+        mesh.from_pydata(positions, [], result["quads"], shade_flat=not self.use_attributes)
         drop_broken(mesh)
         for material in old.materials:
             mesh.materials.append(material)
-        edges = made.origin[reading.values(mesh.edges, "vertices", 2, np.int32)]
+        edges = reading.values(mesh.edges, "vertices", 2, np.int32)
         marks = carrying.marks_along(carried, geometry, result["vertices"], edges)
-        carrying.put(made.carried, marks, mesh)
+        carrying.put(made, marks, mesh)
         if self.use_attributes:
             carrying.keep_choices(old, mesh)
         summary = Summary.of_quads(mesh, result["report"])
         summary.store(mesh)
-        dropped = [] if applies or axes else dropped_edges(result["report"])
+        dropped = [] if applies else dropped_edges(result["report"])
         if dropped:
             select_edges(old, geometry, dropped)
         place = self._replaced if self.original == "REPLACE" else beside
         new = place(objects, mesh, applies)
-        carrying.give_groups(made.carried, new)
-        carrying.give_keys(made.carried, new, made.positions)
+        carrying.give_groups(made, new)
+        carrying.give_keys(made, new, positions)
         texts = [summary.text(), dropped_text(result["report"]), repairs_text(result["report"])]
         if dropped and self.original == "HIDE":
             texts.append(rpt("the original has them selected"))

@@ -117,10 +117,20 @@ class QuadSettings(FeatureSettings, CommonSettings):
         soft_max=10.0,
         max=1000.0,
     )
+    align: FloatProperty(
+        name="Follow Curvature",
+        description="How much the quads follow the directions in which the surface bends most and least, as rings and lengths "
+        "of limbs do. 0 gives fewer irregular vertices; 1 follows these directions as far as they are certain",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
     symmetry: EnumProperty(
         name="Symmetry",
-        description="Make the side of positive coordinates, and mirror it at these planes of the object",
-        items=[(axis, axis, f"Mirror at the plane across the {axis} axis of the object") for axis in "XYZ"],
+        description="Make quads that are symmetric at planes of the object, through its origin or its middle. An object that "
+        "is not symmetric there is refused, with how far it is from it",
+        items=[(axis, axis, f"Symmetric at the plane across the {axis} axis of the object") for axis in "XYZ"],
         options={"ENUM_FLAG"},
         default=set(),
     )

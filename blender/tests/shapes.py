@@ -47,6 +47,17 @@ def grid(size: int, hole: tuple[int, int, int, int] | None = None) -> bpy.types.
     return added("Plane", [vertices[v] for v in used], [[new[v] for v in face] for face in kept])
 
 
+def tube(around: int, rows: int, twist: float) -> bpy.types.Object:
+    """An upright tube of radius 1 and length 6, whose rows are turned against each other by a share of a step."""
+    vertices = [
+        (np.cos(angle), np.sin(angle), 6.0 * row / rows)
+        for row in range(rows + 1)
+        for angle in 2.0 * np.pi * (np.arange(around) + twist * row) / around
+    ]
+    below = [(row * around + k, row * around + (k + 1) % around) for row in range(rows) for k in range(around)]
+    return added("Tube", vertices, [(a, b, b + around, a + around) for a, b in below])
+
+
 def cube(cuts: int = 11) -> bpy.types.Object:
     """A cube of side 2 with UVs, cut into (cuts + 1)^2 quads a side; the upper side has another material and its rim is
     creased, sharp, a seam and bevelled.

@@ -250,19 +250,46 @@ def test_edges_that_cannot_be_followed_are_selected(capfd: pytest.CaptureFixture
     assert sum(counts) == sum(edge.select for edge in source.data.edges) > 0
 
 
-@pytest.mark.parametrize("axes", [{"X"}, {"X", "Y"}])
-def test_symmetry(axes: set[str]) -> None:
-    shapes.monkey()
-    made = quads(faces=800, symmetry=axes)
+def test_quads_of_a_tube_run_around_and_along_it() -> None:
+    """Between edges and the axis of a tube whose own edges run askew, in degrees from the nearest direction."""
+    away = {}
+    for align in (0.0, 1.0):
+        shapes.tube(48, 24, 0.6)
+        made = quads(faces=600, align=align, creases="NONE", use_boundary=False, marks=set())
+        ends = shapes.positions(made.data)[np.array([edge.vertices[:] for edge in made.data.edges])]
+        along = ends[:, 1] - ends[:, 0]
+        angles = np.degrees(np.arccos(np.abs(along[:, 2]) / np.linalg.norm(along, axis=1)))
+        away[align] = np.minimum(angles, 90.0 - angles).mean()
+    assert away[1.0] < 5.0, away
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_symmetry(turn: float) -> None:
+    source = shapes.monkey()
+    source.rotation_euler, source.scale = (0.3, turn, turn), (2.0, 2.0, 3.0)
+    bpy.context.view_layer.update()
+    made = quads(faces=800, symmetry={"X"})
     assert shapes.are_quads(made.data)
     assert near(len(made.data.polygons), 800, 0.1)
-    places = {tuple(place) for place in shapes.positions(made.data).round(5) + 0.0}
-    for axis in axes:
-        sign = np.array([-1.0 if name == axis else 1.0 for name in "XYZ"])
-        assert places == {tuple(place) for place in np.array(list(places)) * sign + 0.0}
+    places = {tuple(place) for place in shapes.positions(made.data) + 0.0}
+    assert places == {(-x + 0.0, y, z) for x, y, z in places}
     # The sides are joined: as many pieces as before, which are the head and the eyes.
-    if axes == {"X"}:
-        assert pieces(made.data) == 3
+    assert pieces(made.data) == 3
+
+
+def test_symmetry_of_several_planes_and_of_a_subdivided_cube() -> None:
+    shapes.cube()
+    made = quads(faces=600, symmetry={"X", "Y", "Z"})
+    places = {tuple(place) for place in shapes.positions(made.data) + 0.0}
+    for signs in np.vstack([np.eye(3) * -2 + 1]):
+        assert places == {tuple(place) for place in np.array(list(places)) * signs + 0.0}
+
+
+def test_what_is_not_symmetric_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
+    source = shapes.monkey()
+    with pytest.raises(RuntimeError, match="not symmetric at the plane y = "):
+        bpy.ops.seamstress.quads(faces=800, symmetry={"Y"})
+    assert bpy.context.object is source and not source.hide_get()
 
 
 def pieces(mesh: bpy.types.Mesh) -> int:

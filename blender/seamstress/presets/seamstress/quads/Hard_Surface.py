@@ -5,5 +5,6 @@ held = bpy.context.scene.seamstress.quads
 
 held.creases = "AUTO"
 held.marks = {"SHARP", "CREASE", "BEVEL", "MATERIAL"}
+held.align = 1.0
 held.cone_bias = 0.5
 held.smooth = 0

@@ -6,5 +6,6 @@ held = bpy.context.scene.seamstress.quads
 held.creases = "NONE"
 held.use_boundary = True
 held.marks = {"MATERIAL"}
+held.align = 1.0
 held.cone_bias = 0.5
 held.smooth = 5
