@@ -349,7 +349,7 @@ impl Surface {
         settings: method::MapOptions,
         watcher: &mut Watcher,
     ) -> Result<SeamlessMap, Error> {
-        match Side::new(self, &asked, options.symmetry)? {
+        match Side::new(self, &asked, options, self.texture_cell())? {
             Some(side) => self.symmetric_map(&side, options, settings, watcher),
             None => {
                 self.make_map(asked, &options.clone().symmetry(Symmetry::None), settings, watcher)

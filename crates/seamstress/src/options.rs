@@ -214,10 +214,6 @@ impl MapOptions {
         {
             return Err(Error::options(format!("min_edge: {least} is more than {largest}")));
         }
-        if self.symmetry != Symmetry::None && (self.has_sizes() || !self.directions.is_empty()) {
-            let text = "symmetry: not together with sizes or directions";
-            return Err(Error::options(text));
-        }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;

@@ -398,7 +398,7 @@ impl Surface {
             let cell = options.size.to_quantize().cell(self.metric().side());
             let sized = self.sized(&asked, &options.map, cell)?;
             let sized = sized.directed(&options.map.directions, cell)?;
-            let side = Side::new(&sized, &asked, options.map.symmetry)?;
+            let side = Side::new(&sized, &asked, &options.map, cell)?;
             let (made, parts) = match &side {
                 None => {
                     let make =

@@ -5,10 +5,11 @@ use crate::features::FeatureCurves;
 use crate::options::MapOptions;
 use crate::report::Distortion;
 use crate::size_sources::SizeSource;
-use crate::surface::{Sizes, Surface};
+use crate::surface::{Sizes, Surface, Wishes};
 use crate::words::rounded;
 use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::symmetry::{Mirror, Segments, images_of};
 use seamstress_mesh::{Geometry, Metric};
 use seamstress_parametrize::{SizeError, Sizing, quality, sizes};
 use seamstress_quads::extract::SurfacePoint;
@@ -21,6 +22,8 @@ use std::sync::Arc;
 const BOUNDS: [f64; 2] = [0.01, 100.0];
 /// A map has sizes as for so many cells along the side of a square with the area of the surface.
 const TEXTURE_CELLS: f64 = 50.0;
+/// How near to an edge vertices are on it, in cells: rounding.
+const ON_EDGE: f64 = 1e-6;
 
 /// Sizes of cells asked for, and made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -93,8 +96,12 @@ impl Surface {
         if !options.has_sizes() {
             return Ok(self.clone());
         }
-        let (painted, side) = (self.painted(&options.sizes)?, self.metric().side());
-        self.clone().with_painted(painted, side, curves, options, cell)
+        let wishes = Wishes {
+            painted: self.painted(&options.sizes)?,
+            near: Arc::new(self.near_edges(&options.sizes, curves)),
+        };
+        let side = self.metric().side();
+        self.clone().with_wishes(wishes, side, curves, options, cell)
     }
 
     /// The same for a map, which has no cells of its own, with directions too.
@@ -127,45 +134,89 @@ impl Surface {
         cell: f64,
     ) -> Result<Self, Error> {
         let Some(sizes) = &self.sizes else { return Ok(finer) };
-        let points = finer.positions().iter().copied();
-        let places = locate(self.positions(), self.faces(), points)
+        let wishes = Wishes {
+            painted: self.painted_at(sizes, finer.positions().iter().copied())?,
+            near: Arc::clone(&sizes.wishes.near),
+        };
+        finer.with_wishes(wishes, sizes.metric.side(), curves, options, cell)
+    }
+
+    /// A side of planes of symmetry of this surface with the sizes that options ask for there: the smaller ones of those
+    /// of each vertex and of its images.
+    ///
+    /// # Errors
+    /// Those of [`Surface::sized`].
+    pub(crate) fn sized_side(
+        &self,
+        side: Self,
+        mirrors: &[Mirror],
+        curves: &FeatureCurves,
+        options: &MapOptions,
+        cell: f64,
+    ) -> Result<Self, Error> {
+        let Some(sizes) = &self.sizes else { return Ok(side) };
+        let points = side.positions().iter().flat_map(|&p| images_of(p, mirrors));
+        let of_images = self.painted_at(sizes, points)?;
+        let smallest = |images: &[f64]| images.iter().copied().fold(f64::INFINITY, f64::min);
+        let wishes = Wishes {
+            painted: of_images.chunks(1 << mirrors.len()).map(smallest).collect(),
+            near: Arc::clone(&sizes.wishes.near),
+        };
+        let goal = side.metric().side();
+        side.with_wishes(wishes, goal, curves, options, cell)
+    }
+
+    /// What is painted at points of the surface.
+    fn painted_at(
+        &self,
+        sizes: &Sizes,
+        points: impl IntoIterator<Item = [f64; 3]>,
+    ) -> Result<Vec<f64>, Error> {
+        let places = locate(self.positions(), self.faces(), points.into_iter())
             .map_err(|cause| Error::new(ErrorKind::Internal, cause))?;
-        let painted = places.iter().map(|at| at.interpolate(&sizes.painted, self.faces()));
-        finer.with_painted(painted.collect(), sizes.metric.side(), curves, options, cell)
+        let painted = &sizes.wishes.painted;
+        Ok(places.iter().map(|at| at.interpolate(painted, self.faces())).collect())
+    }
+
+    /// The edges that make cells smaller, each with how much so.
+    fn near_edges(&self, sources: &[SizeSource], curves: &FeatureCurves) -> Vec<(Segments, f64)> {
+        let ends = |pair: [u32; 2]| pair.map(|v| self.positions()[v as usize]);
+        let segments =
+            |edges: &EdgeSet| Segments::new(edges.vertex_pairs(self.mesh()).into_iter().map(ends));
+        let near = |source: &SizeSource| match source {
+            SizeSource::Features(part) => Some((segments(&curves.edges), *part)),
+            SizeSource::Boundary(part) => Some((segments(&EdgeSet::boundary(self.mesh())), *part)),
+            _ => None,
+        };
+        sources.iter().filter_map(near).collect()
     }
 
     /// Some vertices of a surface, with their sizes.
     pub(crate) fn sized_part(&self, mut part: Self, vertices: &[u32]) -> Self {
         part.sizes = self.sizes.as_ref().map(|sizes| {
             let of = |values: &[f64]| vertices.iter().map(|&v| values[v as usize]).collect();
-            let (painted, factors): (_, Vec<f64>) = (of(&sizes.painted), of(&sizes.factors));
+            let factors: Vec<f64> = of(&sizes.factors);
+            let Wishes { painted, near } = &sizes.wishes;
+            let wishes = Wishes { painted: of(painted), near: Arc::clone(near) };
             let metric = part.metric().scaled(part.mesh(), &factors);
-            Arc::new(Sizes { painted, factors, metric })
+            Arc::new(Sizes { wishes, factors, metric })
         });
         part
     }
 
-    fn with_painted(
+    fn with_wishes(
         mut self,
-        painted: Vec<f64>,
+        wishes: Wishes,
         side: f64,
         curves: &FeatureCurves,
         options: &MapOptions,
         cell: f64,
     ) -> Result<Self, Error> {
-        let mut wanted = painted.clone();
-        let mut near = |edges: &EdgeSet, part: f64| {
-            let mut ends: Vec<u32> = edges.vertex_pairs(self.mesh()).into_flattened();
-            ends.sort_unstable();
-            ends.dedup();
-            ends.iter().for_each(|&v| wanted[v as usize] *= part);
-        };
-        for source in &options.sizes {
-            match source {
-                SizeSource::Features(part) => near(&curves.edges, *part),
-                SizeSource::Boundary(part) => near(&EdgeSet::boundary(self.mesh()), *part),
-                _ => {}
-            }
+        let mut wanted = wishes.painted.clone();
+        for (segments, part) in wishes.near.iter() {
+            let is_on = |p| segments.nearest(p).is_some_and(|(_, away)| away <= ON_EDGE * cell);
+            let those = wanted.iter_mut().zip(self.positions()).filter(|(_, p)| is_on(**p));
+            those.for_each(|(wanted, _)| *wanted *= part);
         }
         let bound = |edge: Option<f64>, default| edge.map_or(default, |edge| edge / cell);
         let sizing = Sizing {
@@ -186,7 +237,7 @@ impl Surface {
             other => Error::options(format!("sizes: {other}")),
         })?;
         let metric = self.metric().scaled(self.mesh(), &factors);
-        self.sizes = Some(Arc::new(Sizes { painted, factors, metric }));
+        self.sizes = Some(Arc::new(Sizes { wishes, factors, metric }));
         Ok(self)
     }
 

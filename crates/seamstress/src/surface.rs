@@ -9,6 +9,7 @@ use seamstress_mesh::attributes::Attributes;
 #[cfg(all(feature = "io", feature = "page"))]
 use seamstress_mesh::coarse::coarsen;
 use seamstress_mesh::soup::TriangleSoup;
+use seamstress_mesh::symmetry::Segments;
 use seamstress_mesh::{Metric, TriMesh};
 use seamstress_parametrize::{Violation, Violations};
 use std::fmt;
@@ -34,12 +35,20 @@ pub struct Surface {
 /// The sizes of cells at the vertices of a surface.
 #[derive(Debug)]
 pub(crate) struct Sizes {
-    /// As sources have them, in proportion to edge lengths.
-    pub(crate) painted: Vec<f64>,
+    pub(crate) wishes: Wishes,
     /// As multiples of the length of a cell.
     pub(crate) factors: Vec<f64>,
     /// The metric in which all cells are alike.
     pub(crate) metric: Metric,
+}
+
+/// What sources say of sizes.
+#[derive(Debug)]
+pub(crate) struct Wishes {
+    /// At the vertices, in proportion to edge lengths.
+    pub(crate) painted: Vec<f64>,
+    /// Edges at which cells are smaller, and how many times as long as elsewhere.
+    pub(crate) near: Arc<Vec<(Segments, f64)>>,
 }
 
 struct Inner {

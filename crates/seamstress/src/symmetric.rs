@@ -2,8 +2,9 @@
 
 use crate::error::{Error, ErrorKind, Stage};
 use crate::features::{FeatureCurves, FeatureReport, edges_of, ordered};
+use crate::options::MapOptions;
 use crate::surface::Surface;
-use crate::symmetry::{Found, Symmetry, SymmetryReport};
+use crate::symmetry::{Found, SymmetryReport};
 use crate::words::counted;
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::refine::FeaturePiece;
@@ -30,16 +31,18 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    /// None where no symmetry is asked for, or none is found.
+    /// With the sizes and directions of the whole, for cells of a length; none where no symmetry is asked for, or none is
+    /// found.
     ///
     /// # Errors
-    /// [`ErrorKind::NotSymmetric`].
+    /// [`ErrorKind::NotSymmetric`], and those of [`Surface::sized`].
     pub(crate) fn new(
         whole: &Surface,
         asked: &FeatureCurves,
-        symmetry: Symmetry,
+        options: &MapOptions,
+        cell: f64,
     ) -> Result<Option<Self>, Error> {
-        let planes = whole.symmetry_planes(symmetry)?;
+        let planes = whole.symmetry_planes(options.symmetry)?;
         if planes.is_empty() {
             return Ok(None);
         }
@@ -58,6 +61,9 @@ impl Side {
         let rim = rim.filter(|&ends| piece.planes_of(ends) != 0);
         let edges = edges_of(surface.mesh(), &features.chain(rim).collect::<Vec<_>>());
         let curves = asked.on(&surface, edges);
+        let mirrors: Vec<Mirror> = planes.iter().map(|found| found.mirror).collect();
+        let surface = whole.directed_side(surface, &piece.face_origin, &mirrors)?;
+        let surface = whole.sized_side(surface, &mirrors, &curves, options, cell)?;
         let (whole, asked) = (whole.clone(), asked.clone());
         Ok(Some(Self { surface, curves, whole, asked, planes, piece }))
     }

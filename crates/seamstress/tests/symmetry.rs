@@ -236,17 +236,58 @@ fn small_folds_in_the_plane_are_left_out_and_sheets_there_refused() {
     assert!(error.message().contains("in the plane"), "{error}");
 }
 
+/// The mean length of edges whose middle is somewhere.
+fn mean_edge(made: &QuadMesh, is_there: impl Fn([f64; 3]) -> bool) -> f64 {
+    let at = |v: u32| made.positions()[v as usize];
+    let sides = made.quads().iter().flat_map(|&[a, b, c, d]| [[a, b], [b, c], [c, d], [d, a]]);
+    let there = sides.map(|ends| ends.map(at)).filter(|[a, b]| {
+        let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
+        is_there(middle)
+    });
+    let lengths: Vec<f64> =
+        there.map(|[a, b]| (0..3).map(|k| a[k] - b[k]).fold(0.0, f64::hypot)).collect();
+    lengths.iter().sum::<f64>() / lengths.len() as f64
+}
+
 #[test]
-fn sizes_and_directions_are_refused() {
-    let surface = surface(&icosphere(2));
-    let symmetric = options(100, "x");
-    let with = |change: fn(&mut MapOptions)| {
-        let mut options = symmetric.clone();
-        change(&mut options.map);
-        surface.quad_mesh(&options).unwrap_err().code()
-    };
-    assert_eq!(with(|map| map.adaptive = 1.0), "options");
-    assert_eq!(with(|map| map.directions = vec!["boundary".parse().unwrap()]), "options");
+fn sizes_of_one_side_count_on_both() {
+    let soup = icosphere(4);
+    let half = |p: &[f64; 3]| if p[1] > 0.0 && p[0] < 0.0 { 0.5 } else { 1.0 };
+    let values = soup.positions.iter().map(half).collect();
+    let (domain, kind) = (AttributeDomain::Vertex, AttributeKind::Number);
+    let painted = vec![Attribute::new("size", domain, kind, 1, values)];
+    let surface = surface(&soup).with_attributes(painted.into()).unwrap();
+    let mut options = options(1000, "x");
+    options.map.sizes = vec!["property:size".parse().unwrap()];
+    let made = surface.quad_mesh(&options).unwrap();
+    assert_symmetric(&made, "painted ball");
+    let count = made.quads().len();
+    assert!((900..1100).contains(&count), "{count} quads");
+    let [back, front] = [-1.0, 1.0].map(|side| mean_edge(&made, |p| side * p[1] > 0.5));
+    assert!((1.7..2.3).contains(&(back / front)), "{back} {front}");
+}
+
+#[test]
+fn edges_in_the_plane_are_no_boundary_of_the_surface() {
+    let mut options = options(500, "xy");
+    options.map.sizes = vec!["boundary:0.3".parse().unwrap(), "features:0.3".parse().unwrap()];
+    let made = surface(&icosphere(4)).quad_mesh(&options).unwrap();
+    let sizes = made.report().sizes.unwrap();
+    assert!(sizes.largest < sizes.least * 1.001, "{sizes}");
+}
+
+#[test]
+fn curvature_and_directions_go_with_symmetry() {
+    let soup = stretch(&torus(48, 24, 2.0, 0.7), [1.0, 1.0, 0.4]);
+    let mut options = options(800, "xz");
+    options.map.adaptive = 1.0;
+    options.map.directions = vec!["edges:0-1".parse().unwrap()];
+    let made = surface(&soup).quad_mesh(&options).unwrap();
+    assert_symmetric(&made, "flat ring");
+    let radius = |p: [f64; 3]| p[0].hypot(p[1]);
+    let rim = mean_edge(&made, |p| radius(p) > 2.6);
+    let top = mean_edge(&made, |p| (1.8..2.2).contains(&radius(p)));
+    assert!(rim < 0.85 * top, "{rim} {top}");
 }
 
 #[test]

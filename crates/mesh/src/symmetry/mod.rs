@@ -1,8 +1,8 @@
 //! Planes of symmetry: how far a mesh is from one, and the side of it.
 //!
-//! * [`Mirror`]: a plane, and images across it.
+//! * [`Mirror`]: a plane, and images across it; [`images_of`] several.
 //! * [`images`]: the vertex that the image of each vertex is, where a mesh is its own image.
-//! * [`Segments`]: what tells whether features have images among features.
+//! * [`Segments`]: what tells whether a point lies on a feature.
 //! * [`cut`]: the side of a mesh, with triangles that cross the plane split flat.
 
 mod cut;
@@ -76,6 +76,14 @@ impl Mirror {
     fn moved(&self, p: Point, by: f64) -> Point {
         [0, 1, 2].map(|k| p[k] + by * self.normal[k])
     }
+}
+
+/// A point and its images across any of some planes: twice as many with each plane.
+pub fn images_of(p: [f64; 3], mirrors: &[Mirror]) -> impl Iterator<Item = [f64; 3]> {
+    (0..1usize << mirrors.len()).map(move |across| {
+        let those = mirrors.iter().enumerate().filter(|(k, _)| across >> k & 1 == 1);
+        those.fold(p, |p, (_, mirror)| mirror.image(p))
+    })
 }
 
 #[cfg(test)]
