@@ -57,6 +57,13 @@ def finished(object):
     return object
 
 
+def quads(**settings):
+    """Runs the operator."""
+    import bpy
+
+    return bpy.ops.seamstress.quads(**settings)
+
+
 def monkey():
     """A monkey subdivided by a modifier."""
     import bpy
@@ -67,7 +74,7 @@ def monkey():
     bpy.ops.object.shade_smooth()
     bpy.ops.object.modifier_apply(modifier="Subdivision")
     triangulated(object)
-    return object, lambda: bpy.ops.seamstress.quads(faces=2400, symmetry={"X"})
+    return object, lambda: quads(faces=2400, symmetry={"X"})
 
 
 def triangulated(object) -> None:
@@ -83,7 +90,7 @@ def bracket():
     import bpy
 
     bpy.ops.wm.obj_import(filepath=str(ROOT / "samples" / "bracket.obj"), forward_axis="Y", up_axis="Z")
-    return finished(bpy.context.object), lambda: bpy.ops.seamstress.quads(faces=900)
+    return finished(bpy.context.object), lambda: quads(faces=900)
 
 
 def cow():
@@ -117,7 +124,7 @@ def block():
         bpy.ops.object.modifier_apply(modifier="Cut")
         bpy.data.objects.remove(tool)
     object.select_set(True)
-    return object, lambda: bpy.ops.seamstress.quads(target="EDGE", edge_length=0.11)
+    return object, lambda: quads(target="EDGE", edge_length=0.11)
 
 
 def ball():
@@ -132,10 +139,94 @@ def ball():
         x, y, z = polygon.center
         polygon.material_index = int(z > 0.25 * math.sin(3.0 * math.atan2(y, x)))
     bpy.ops.object.shade_smooth()
-    return object, lambda: bpy.ops.seamstress.quads(faces=900, smooth=2)
+    return object, lambda: quads(faces=900, smooth=2)
 
 
-SCENES = {"monkey": monkey, "bracket": bracket, "cow": cow, "block": block, "ball": ball}
+def limbs():
+    """The sample of a cow."""
+    object, _ = cow()
+    return object, lambda: quads(faces=3000)
+
+
+def adaptive():
+    """The same with quads that are smaller where it bends."""
+    object, _ = cow()
+    return object, lambda: quads(faces=2000, adaptive=1.0)
+
+
+def painted():
+    """A monkey with bright paint around its eyes and mouth."""
+    import bpy
+    import numpy as np
+
+    object, _ = monkey()
+    places = np.array([vertex.co for vertex in object.data.vertices])
+    spots = [(-0.35, -0.8, 0.24), (0.35, -0.8, 0.24), (0.0, -0.75, -0.55)]
+    away = np.min([np.linalg.norm(places - spot, axis=1) for spot in spots], axis=0)
+    bright = 1.0 / (1.0 + np.exp((away - 0.4) / 0.04))
+    layer = object.data.color_attributes.new("paint", "FLOAT_COLOR", "POINT")
+    shades = [1.0, 0.55, 0.15] * bright[:, None] + SURFACE[:3] * (1.0 - bright[:, None])
+    layer.data.foreach_set("color", np.column_stack([shades, np.ones(len(shades))]).astype(np.float32).ravel())
+    group = object.vertex_groups.new(name="density")
+    for vertex, weight in enumerate(bright):
+        group.add([vertex], float(weight), "REPLACE")
+    made = bpy.data.materials.new("paint")
+    made.use_nodes = True
+    colors = made.node_tree.nodes.new("ShaderNodeVertexColor")
+    colors.layer_name = "paint"
+    shader = made.node_tree.nodes["Principled BSDF"]
+    made.node_tree.links.new(colors.outputs["Color"], shader.inputs["Base Color"])
+    object.data.materials[0] = made
+    return object, lambda: quads(faces=3000, symmetry={"X"}, density="GROUP", density_ratio=4.0)
+
+
+def strokes():
+    """A tube with strokes that wind around it."""
+    import bpy
+    import numpy as np
+
+    bpy.ops.mesh.primitive_cylinder_add(vertices=64, radius=0.8, depth=3.2, end_fill_type="NOTHING")
+    object = finished(bpy.context.object)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide(number_cuts=15)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.object.shade_smooth()
+    triangulated(object)
+    heights = np.linspace(-1.5, 1.5, 40)
+    bpy.ops.object.grease_pencil_add(type="EMPTY")
+    pencil = bpy.context.object
+    drawing = pencil.data.layers.new("Guides").frames.new(1).drawing
+    drawing.add_strokes([len(heights)] * 4)
+    turns = [heights * 0.9 + start * math.pi / 2.0 for start in range(4)]
+    lines = np.array([np.column_stack([0.81 * np.cos(turn), 0.81 * np.sin(turn), heights]) for turn in turns])
+    drawing.attributes["position"].data.foreach_set("vector", lines.astype(np.float32).ravel())
+    # Grease pencil is not for this renderer.
+    drawn = bpy.data.curves.new("Strokes", "CURVE")
+    drawn.dimensions, drawn.bevel_depth = "3D", 0.02
+    drawn.materials.append(material("clay", CLAY))
+    for line in lines:
+        spline = drawn.splines.new("POLY")
+        spline.points.add(len(line) - 1)
+        spline.points.foreach_set("co", np.column_stack([line, np.ones(len(line))]).astype(np.float32).ravel())
+    bpy.context.collection.objects.link(bpy.data.objects.new("Strokes", drawn))
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other is object)
+    bpy.context.view_layer.objects.active = object
+    return object, lambda: quads(faces=900, guide_strokes={"GREASE_PENCIL"})
+
+
+SCENES = {
+    "monkey": monkey,
+    "bracket": bracket,
+    "cow": cow,
+    "block": block,
+    "ball": ball,
+    "limbs": limbs,
+    "adaptive": adaptive,
+    "painted": painted,
+    "strokes": strokes,
+}
 
 
 def edges_of(object):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seamstress in Blender: certified seamless UV maps and quad meshes.
 
-`reading` makes arrays of meshes, `running` and `jobs` have them worked on in another process (`worker`), `remeshing`,
-`unwrapping` and `checking` are the operators, `carrying` what becomes of what meshes carry.
+`reading` makes arrays of meshes, `guiding` of what is painted and drawn on them; `running` and `jobs` have them worked on in
+another process (`worker`), `remeshing`, `unwrapping` and `checking` are the operators, `carrying` what becomes of what
+meshes carry.
 """
 
 from pathlib import Path

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils.kdtree import KDTree
 
-from .reading import Geometry, values
+from .reading import Geometry, group_weights, values
 
 #: Types of attributes: the property of an element, how many numbers it has, and of what kind. The library mixes real
 #: numbers, and takes others for labels.
@@ -118,16 +118,6 @@ def gather(object: bpy.types.Object, mesh: bpy.types.Mesh) -> Carried:
     if mesh.has_custom_normals:
         carried.parts.append(Part("normals", "corner", values(mesh.corner_normals, "vector", 3)))
     return carried
-
-
-def group_weights(mesh: bpy.types.Mesh, n: int) -> np.ndarray:
-    """The weights of all vertex groups (vertices, n)."""
-    weights = np.zeros((len(mesh.vertices), n))
-    for vertex in mesh.vertices:
-        for group in vertex.groups:
-            if group.group < n:
-                weights[vertex.index, group.group] = group.weight
-    return weights
 
 
 def marks_along(carried: Carried, geometry: Geometry, positions: np.ndarray, edges: np.ndarray) -> list[np.ndarray]:

@@ -48,7 +48,8 @@ is wrong in edit mode"""
 
     def end(self, context: bpy.types.Context) -> None:
         """Goes into edit mode if there is something to see."""
-        found = getattr(self, "_found", [])
+        # What is in collections alone can be selected, but not shown.
+        found = [object for object in getattr(self, "_found", []) if object.name in context.view_layer.objects]
         super().end(context)
         if found and context.mode == "OBJECT":
             for object in context.view_layer.objects:

@@ -28,6 +28,26 @@ def draw_features(layout: bpy.types.UILayout, held: Any) -> None:
     layout.column(heading="Marked").prop(held, "marks")
 
 
+def draw_guides(layout: bpy.types.UILayout, held: Any) -> None:
+    """Which directions are followed."""
+    layout.prop(held, "align")
+    layout.column(heading="Guide Edges").prop(held, "guide_marks")
+    layout.column(heading="Strokes").prop(held, "guide_strokes")
+
+
+def draw_density(layout: bpy.types.UILayout, held: Any) -> None:
+    """How sizes vary."""
+    layout.prop(held, "adaptive")
+    layout.prop(held, "density")
+    if held.density == "NONE":
+        return
+    object = bpy.context.active_object
+    if object is not None and object.type == "MESH":
+        where, listed = (object, "vertex_groups") if held.density == "GROUP" else (object.data, "color_attributes")
+        layout.prop_search(held, "density_name", where, listed)
+    layout.prop(held, "density_ratio")
+
+
 def draw_quads(layout: bpy.types.UILayout, held: Any) -> None:
     """Settings of quads."""
     layout.use_property_split = True
@@ -35,9 +55,9 @@ def draw_quads(layout: bpy.types.UILayout, held: Any) -> None:
     layout.prop(held, "target")
     layout.prop(held, {"FACES": "faces", "EDGE": "edge_length", "RATIO": "ratio"}[held.target])
     layout.row(heading="Symmetry").prop(held, "symmetry")
-    layout.prop(held, "align")
-    layout.separator()
-    draw_features(layout, held)
+    for draw in (draw_features, draw_guides, draw_density):
+        layout.separator()
+        draw(layout, held)
     layout.separator()
     layout.prop(held, "cone_bias")
     layout.prop(held, "smooth")
@@ -54,7 +74,9 @@ def draw_map(layout: bpy.types.UILayout, held: Any) -> None:
     layout.row().prop(held, "scale", expand=True)
     if held.scale == "WORLD":
         layout.prop(held, "tile")
-    draw_features(layout, held)
+    for draw in (draw_features, draw_guides):
+        layout.separator()
+        draw(layout, held)
     layout.separator()
     for name in ("cone_bias", "use_seams", "use_cones", "use_checker", "use_repair"):
         layout.prop(held, name)

@@ -164,7 +164,20 @@ def feature_sources(mesh: bpy.types.Mesh, geometry: Geometry, settings: Any) -> 
         sources.append(f"angle:{np.degrees(settings.angle)}")
     if settings.use_boundary:
         sources.append("boundary")
-    is_marked = marked_edges(mesh, geometry, set(settings.marks))
-    if is_marked.any():
-        sources.append("edges:" + ",".join(f"{a}-{b}" for a, b in geometry.edges[is_marked]))
-    return sources
+    return sources + edge_source(geometry, marked_edges(mesh, geometry, set(settings.marks)))
+
+
+def edge_source(geometry: Geometry, is_chosen: np.ndarray) -> list[str]:
+    """The source of edges as the library has it; none if no edge is chosen."""
+    pairs = [f"{a}-{b}" for a, b in geometry.edges[is_chosen]]
+    return ["edges:" + ",".join(pairs)] if pairs else []
+
+
+def group_weights(mesh: bpy.types.Mesh, n: int) -> np.ndarray:
+    """The weights of all vertex groups of an object that has so many (vertices, n)."""
+    weights = np.zeros((len(mesh.vertices), n))
+    for vertex in mesh.vertices:
+        for group in vertex.groups:
+            if group.group < n:
+                weights[vertex.index, group.group] = group.weight
+    return weights

@@ -8,10 +8,10 @@ import bpy
 import numpy as np
 from bpy.app.translations import pgettext_rpt as rpt
 
-from . import carrying, reading, settings
+from . import carrying, guiding, reading, settings
 from .carrying import Carried
 from .reading import Geometry, Unfit
-from .running import Running, Task, selected
+from .running import Running, Task
 from .selecting import drop_broken, select_edges
 from .summary import Summary, dropped_edges, dropped_text, repairs_text
 from .targets import Target
@@ -29,10 +29,6 @@ attributes. Runs beside Blender; Esc stops it"""
         from .panel import draw_quads
 
         draw_quads(self.layout, self)
-
-    @classmethod
-    def objects(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
-        return list(dict.fromkeys([*super().objects(context), *instanced(selected(context))]))
 
     def result_of(self, object: bpy.types.Object) -> Any:
         return object if self._applies(object) else object.data
@@ -55,12 +51,18 @@ attributes. Runs beside Blender; Esc stops it"""
                 "features": reading.feature_sources(mesh, geometry, self) or ["none"],
                 "symmetry": axes or "none",
                 "align": self.align,
+                "directions": guiding.directions(mesh, geometry, self),
+                "adaptive": self.adaptive,
                 "smooth": self.smooth,
                 "cone_bias": self.cone_bias,
                 **self._size(len(mesh.polygons)),
             }
+            sizes = guiding.sizes(object, mesh, self)
+        strokes = guiding.strokes(object, geometry, self)
         arguments = {
             "mesh": geometry.arrays(),
+            "sizes": sizes,
+            "strokes": strokes,
             "repair": self.use_repair,
             "options": options,
             "values": [(part.on, part.values) for part in carried.parts],
@@ -70,7 +72,8 @@ attributes. Runs beside Blender; Esc stops it"""
 
         def finish(result: dict[str, Any]) -> str:
             found = [target.object() for target in targets]
-            return self._finish_objects(found, applies, geometry, carried, result)
+            text = self._finish_objects(found, applies, geometry, carried, result)
+            return "; ".join(filter(None, [text, guiding.strokes_text(self, strokes)]))
 
         return Task(object.name, "quads", arguments, finish)
 
@@ -167,11 +170,3 @@ def drop_modifiers(object: bpy.types.Object) -> None:
     """Removes the modifiers that were applied."""
     for modifier in [modifier for modifier in object.modifiers if modifier.show_viewport]:
         object.modifiers.remove(modifier)
-
-
-def instanced(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
-    """The meshes in the collections that objects are instances of."""
-    collections = [object.instance_collection for object in objects if object.instance_type == "COLLECTION"]
-    return [
-        object for collection in filter(None, collections) for object in collection.all_objects if object.type == "MESH"
-    ]

@@ -81,8 +81,10 @@ class Running:
 
     @classmethod
     def objects(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The meshes to work on."""
-        return [object for object in selected(context) if object.type == "MESH"]
+        """The meshes to work on, also those in collections that are instanced."""
+        chosen = selected(context)
+        meshes = [object for object in [*chosen, *instanced(chosen)] if object.type == "MESH"]
+        return list(dict.fromkeys(meshes))
 
     def result_of(self, object: bpy.types.Object) -> Any:
         """What objects have in common that share a result."""
@@ -218,6 +220,12 @@ def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
     if context.mode.startswith("EDIT"):
         return list(context.objects_in_mode)
     return context.selected_objects or [object for object in [context.active_object] if object is not None]
+
+
+def instanced(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
+    """The objects in the collections that objects are instances of."""
+    collections = [object.instance_collection for object in objects if object.instance_type == "COLLECTION"]
+    return [object for collection in filter(None, collections) for object in collection.all_objects]
 
 
 def redraw(context: bpy.types.Context) -> None:

@@ -5,7 +5,7 @@ import math
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 MARKS = [
     ("SHARP", "Sharp", "Edges marked sharp"),
@@ -83,8 +83,84 @@ class CommonSettings:
     )
 
 
-class QuadSettings(FeatureSettings, CommonSettings):
+def align_property(default: float) -> Any:
+    """How much principal curvature is followed."""
+    return FloatProperty(
+        name="Follow Curvature",
+        description="How much the grid follows the directions in which the surface bends most and least, as rings and lengths "
+        "of limbs do. 0 gives fewer irregular vertices; 1 follows these directions as far as they are certain",
+        default=default,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+
+
+class GuideSettings:
+    """Which directions are followed."""
+
+    align: align_property(0.0)
+    guide_marks: EnumProperty(
+        name="Guide Edges",
+        description="Marks of edges whose direction is followed wherever it can be, without lines along the edges",
+        items=MARKS,
+        options={"ENUM_FLAG"},
+        default=set(),
+    )
+    guide_strokes: EnumProperty(
+        name="Guide Strokes",
+        description="Strokes drawn on the surface whose direction is followed wherever it can be. Those farther from it than "
+        "a twentieth of its size do not count",
+        items=[
+            ("ANNOTATION", "Annotations", "Annotations of the scene that are shown"),
+            ("GREASE_PENCIL", "Grease Pencil", "Strokes of the grease pencil objects that are shown"),
+        ],
+        options={"ENUM_FLAG"},
+        default=set(),
+    )
+
+
+class DensitySettings:
+    """How sizes vary over the surface."""
+
+    adaptive: FloatProperty(
+        name="Adapt to Curvature",
+        description="How much smaller quads are where the surface bends, and larger elsewhere; there are as many in all. "
+        "0 gives quads of one size; with 1 all leave the surface equally far",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    density: EnumProperty(
+        name="Density",
+        description="What says where quads are smaller; there are as many in all",
+        items=[
+            ("NONE", "None", "Nothing that is painted"),
+            ("GROUP", "Vertex Group", "Quads are smaller where the weight is larger"),
+            ("COLOR", "Color Attribute", "Quads are smaller where the color is brighter"),
+        ],
+        default="NONE",
+    )
+    density_name: StringProperty(
+        name="Painted In",
+        description="The vertex group or color attribute that says where quads are smaller; the active one if none is named",
+    )
+    density_ratio: FloatProperty(
+        name="Edge Ratio",
+        description="How many times longer edges are where weight or brightness is 0 than where it is 1, without unit",
+        default=4.0,
+        min=0.01,
+        soft_min=1.0,
+        soft_max=16.0,
+        max=100.0,
+    )
+
+
+class QuadSettings(FeatureSettings, GuideSettings, DensitySettings, CommonSettings):
     """Settings of quad meshes."""
+
+    align: align_property(1.0)
 
     target: EnumProperty(
         name="Target",
@@ -116,15 +192,6 @@ class QuadSettings(FeatureSettings, CommonSettings):
         min=1e-4,
         soft_max=10.0,
         max=1000.0,
-    )
-    align: FloatProperty(
-        name="Follow Curvature",
-        description="How much the quads follow the directions in which the surface bends most and least, as rings and lengths "
-        "of limbs do. 0 gives fewer irregular vertices; 1 follows these directions as far as they are certain",
-        default=1.0,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
     )
     symmetry: EnumProperty(
         name="Symmetry",
@@ -164,7 +231,7 @@ class QuadSettings(FeatureSettings, CommonSettings):
     )
 
 
-class MapSettings(FeatureSettings, CommonSettings):
+class MapSettings(FeatureSettings, GuideSettings, CommonSettings):
     """Settings of seamless UV maps."""
 
     creases: creases_property("NONE")

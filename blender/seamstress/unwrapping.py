@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.app.translations import pgettext_rpt as rpt
 
-from . import reading, settings
+from . import guiding, reading, settings
 from .reading import Geometry, Unfit
 from .running import Running, Task
 from .selecting import select_edges
@@ -47,11 +47,19 @@ vertices called cones. Modifiers are not applied. Runs beside Blender; Esc stops
         geometry = reading.read(mesh, reading.linear_part(object))
         options = {
             "features": reading.feature_sources(mesh, geometry, self) or ["none"],
+            "align": self.align,
+            "directions": guiding.directions(mesh, geometry, self),
             "cone_bias": self.cone_bias,
         }
-        arguments = {"mesh": geometry.arrays(), "repair": self.use_repair, "options": options}
+        strokes = guiding.strokes(object, geometry, self)
+        arguments = {"mesh": geometry.arrays(), "strokes": strokes, "repair": self.use_repair, "options": options}
         target = Target.of(object)
-        return Task(object.name, "seamless", arguments, lambda result: self._write(target.object(), geometry, result))
+
+        def finish(result: dict[str, Any]) -> str:
+            text = self._write(target.object(), geometry, result)
+            return "; ".join(filter(None, [text, guiding.strokes_text(self, strokes)]))
+
+        return Task(object.name, "seamless", arguments, finish)
 
     def _write(self, object: bpy.types.Object, geometry: Geometry, result: dict[str, Any]) -> str:
         mesh = object.data

@@ -58,9 +58,25 @@ def corners_of(mesh: dict, made):
     return found.reshape(-1, 3)
 
 
-def quads(mesh: dict, repair: bool, options: dict, values: list) -> dict:
+def guided(options: dict, sizes, strokes) -> dict:
+    """Options with relative edge lengths at the vertices, if there are any, and segments of strokes (s, 2, 3), as files."""
+    import numpy as np
+
+    options = {"directions": [], **options}
+    if sizes is not None:
+        np.savetxt("sizes.csv", sizes)
+        options["sizes"] = "csv:sizes.csv"
+    if strokes is not None and len(strokes):
+        ends = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in strokes.reshape(-1, 3).tolist())
+        lines = "".join(f"l {2 * k + 1} {2 * k + 2}\n" for k in range(len(strokes)))
+        Path("strokes.obj").write_text(ends + lines)
+        options["directions"] = [*options["directions"], "strokes:strokes.obj"]
+    return options
+
+
+def quads(mesh: dict, repair: bool, options: dict, values: list, sizes=None, strokes=None) -> dict:
     """A quad mesh, and what the mesh carries: pairs of what values are on, and a row for each element."""
-    made = surface(mesh, repair).quad_mesh(**options, progress=told)
+    made = surface(mesh, repair).quad_mesh(**guided(options, sizes, strokes), progress=told)
     return {
         "vertices": made.vertices,
         "quads": made.quads,
@@ -69,11 +85,11 @@ def quads(mesh: dict, repair: bool, options: dict, values: list) -> dict:
     }
 
 
-def seamless(mesh: dict, repair: bool, options: dict) -> dict:
+def seamless(mesh: dict, repair: bool, options: dict, strokes=None) -> dict:
     """The UV of every corner of a seamless map, and its cones by the mesh's own vertices."""
     import numpy as np
 
-    made = surface(mesh, repair).parametrize(**options, progress=told)
+    made = surface(mesh, repair).parametrize(**guided(options, None, strokes), progress=told)
     corners = corners_of(mesh, made.surface)
     uv = np.zeros((len(mesh["corners"]), 2))
     uv[corners] = unfolded(made.uv[made.face_uv], corners, made.surface.face_origin)
@@ -139,7 +155,9 @@ def main() -> None:
     if sys.platform == "linux":
         # Where memory runs out, the system ends this process rather than Blender.
         Path("/proc/self/oom_score_adj").write_text("1000")
-    name, arguments = pickle.loads(Path(folder, "job.pickle").read_bytes())
+    # Files of the job have no other place.
+    os.chdir(folder)
+    name, arguments = pickle.loads(Path("job.pickle").read_bytes())
     try:
         result = {"result": globals()[name](**arguments)}
     except BrokenPipeError:
@@ -152,9 +170,9 @@ def main() -> None:
         # The hint is about keywords of Python.
         message = str(error.args[0]) if fields["code"] else f"{type(error).__name__}: {error}"
         result = {"error": {"message": message, **fields}}
-    partial = Path(folder, "result.partial")
+    partial = Path("result.partial")
     partial.write_bytes(pickle.dumps(result))
-    partial.replace(Path(folder, "result.pickle"))
+    partial.replace("result.pickle")
 
 
 if __name__ == "__main__":

@@ -72,3 +72,61 @@ def test_operators_do_their_work(mesh: str, operator: str) -> None:
         assert 360 <= len(made.polygons) <= 440
     elif operator == "map":
         assert source.data.uv_layers.active.name == "Seamless"
+
+
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_empty_meshes_are_named_and_left(operator: str) -> None:
+    empty = shapes.added("Empty", [], [])
+    with pytest.raises(RuntimeError, match="Empty has no faces"):
+        OPERATORS[operator]()
+    assert bpy.data.objects[:] == [empty] and not empty.hide_get()
+
+
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_operators_are_a_step_of_undo(operator: str) -> None:
+    """Each makes a step of its own, which brings back all that it has changed."""
+    shapes.monkey()
+    bpy.ops.ed.undo_push(message="before")
+
+    def state() -> object:
+        (mesh,) = (object.data for object in bpy.data.objects if object.name == "Suzanne")
+        return len(bpy.data.objects), len(mesh.polygons), mesh.uv_layers.keys(), bpy.data.objects["Suzanne"].hide_get()
+
+    before = state()
+    assert CALLS[operator]() == {"FINISHED"}
+    assert state() != before or operator == "check"
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.ed.undo()
+    assert state() == before
+
+
+#: As the interface calls them, with a step of undo.
+CALLS: dict[str, Callable[[], set[str]]] = {
+    "quads, hide": lambda: bpy.ops.seamstress.quads("EXEC_DEFAULT", True, faces=400),
+    "quads, replace": lambda: bpy.ops.seamstress.quads("EXEC_DEFAULT", True, faces=400, original="REPLACE"),
+    "map": lambda: bpy.ops.seamstress.seamless_uv("EXEC_DEFAULT", True),
+    "check": lambda: bpy.ops.seamstress.check("EXEC_DEFAULT", True),
+}
+
+
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_instances_of_collections_are_worked_on(operator: str) -> None:
+    source = shapes.grid(8)
+    bpy.context.collection.objects.unlink(source)
+    part = bpy.data.collections.new("Part")
+    part.objects.link(source)
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", part
+    bpy.context.collection.objects.link(instance)
+    source.data.polygons[9].flip()
+    shapes.select(instance)
+    assert OPERATORS[operator]() == {"FINISHED"}
+    if operator == "quads, replace":
+        assert 360 <= len(source.data.polygons) <= 440
+    elif operator == "quads, hide":
+        assert [object.hide_viewport for object in part.objects] == [True, False]
+    elif operator == "map":
+        assert "Seamless" in source.data.uv_layers
+    else:
+        assert sum(edge.select for edge in source.data.edges) == 4

@@ -31,6 +31,10 @@ class Layout:
         assert name in held.bl_rna.properties
         self.drawn.append(name)
 
+    def prop_search(self, held: object, name: str, where: bpy.types.ID, listed: str, **_: object) -> None:
+        assert listed in where.bl_rna.properties
+        self.prop(held, name)
+
     def operator(self, name: str, **_: object) -> SimpleNamespace:
         module, function = name.split(".")
         assert getattr(getattr(bpy.ops, module), function).get_rna_type()
@@ -59,6 +63,7 @@ def drawn(kind: type) -> list[str]:
 
 
 def test_the_panels_show_every_setting() -> None:
+    shapes.monkey()
     for (kind, name, operator), shown in zip(HELD, (panel.SEAMSTRESS_PT_quads, panel.SEAMSTRESS_PT_map)):
         held = getattr(bpy.context.scene.seamstress, name)
         seen = set()
@@ -66,8 +71,26 @@ def test_the_panels_show_every_setting() -> None:
             held.creases = "ANGLE"
             if name == "quads":
                 held.target = target
+                held.density = {"FACES": "NONE", "EDGE": "GROUP", "RATIO": "COLOR"}[target]
             seen |= set(drawn(shown))
         assert seen == {*settings.names(kind), operator.bl_idname}
+
+
+def test_the_panel_of_the_last_operation_has_every_setting() -> None:
+    shapes.monkey()
+    for kind, name, operator in HELD:
+        assert {"REGISTER", "UNDO", "PRESET"} <= operator.bl_options
+        found: list[str] = []
+        held = getattr(bpy.context.scene.seamstress, name)
+        panels = {"quads": panel.draw_quads, "map": panel.draw_map}
+        panels[name](Layout(found), held)
+        own: list[str] = []
+        operator.draw(SimpleNamespace(layout=Layout(own), bl_rna=held.bl_rna, **settings_of(kind, held)), bpy.context)
+        assert own == found
+
+
+def settings_of(kind: type, held: object) -> dict[str, object]:
+    return {name: getattr(held, name) for name in settings.names(kind)}
 
 
 def test_the_panel_shows_figures_of_the_mesh_and_progress(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,6 +61,55 @@ def test_borders_are_kept() -> None:
     assert near(shapes.edge_length(made, shapes.border_edges(made.data)), 8.0 + 2.5, 1e-5)
 
 
+def marked_line(mark: str) -> bpy.types.Object:
+    """A plane with a line through it, which nothing but a mark tells."""
+    source = shapes.grid(20)
+    mesh = source.data
+    places = shapes.positions(mesh)
+    on_line = [all(abs(places[v, 0] - 0.3) < 1e-6 for v in edge.vertices) for edge in mesh.edges]
+    beyond = np.array([polygon.center.x > 0.3 for polygon in mesh.polygons])
+    if mark == "MATERIAL":
+        for name in "ab":
+            mesh.materials.append(bpy.data.materials.new(name))
+        mesh.polygons.foreach_set("material_index", beyond.astype(np.int32))
+    elif mark == "FACE_SET":
+        sets = mesh.attributes.new(".sculpt_face_set", "INT", "FACE")
+        sets.data.foreach_set("value", beyond.astype(np.int32) + 1)
+    else:
+        name = {"SHARP": "sharp_edge", "CREASE": "crease_edge", "BEVEL": "bevel_weight_edge", "SEAM": "uv_seam"}[mark]
+        kind = "BOOLEAN" if mark in {"SHARP", "SEAM"} else "FLOAT"
+        mesh.attributes.new(name, kind, "EDGE").data.foreach_set("value", on_line)
+    return source
+
+
+def length_at(made: bpy.types.Object, x: float) -> float:
+    places = shapes.positions(made.data)
+    ends = np.array([edge.vertices[:] for edge in made.data.edges])
+    return shapes.edge_length(made, (np.abs(places[ends, 0] - x) < 1e-5).all(axis=1))
+
+
+@pytest.mark.parametrize("mark", ["SHARP", "CREASE", "BEVEL", "SEAM", "MATERIAL", "FACE_SET"])
+def test_marked_edges_are_followed(mark: str) -> None:
+    """And only if their mark is chosen."""
+    followed = {}
+    for marks in ({mark}, set()):
+        marked_line(mark)
+        made = quads(faces=300, creases="NONE", marks=marks, use_attributes=False)
+        followed[bool(marks)] = length_at(made, 0.3)
+    assert near(followed[True], 2.0, 1e-4) and followed[False] < 0.5
+
+
+def test_edges_are_followed_from_an_angle_on() -> None:
+    """A plane folded by 30 degrees."""
+    for angle, is_followed in ((25.0, True), (35.0, False)):
+        source = shapes.grid(20)
+        places = shapes.positions(source.data)
+        places[:, 2] = np.tan(np.radians(30.0)) * (places[:, 0] - 0.3).clip(0.0)
+        source.data.vertices.foreach_set("co", places.astype(np.float32).ravel())
+        made = quads(faces=300, creases="ANGLE", angle=np.radians(angle), align=0.0)
+        assert (length_at(made, 0.3) > 1.99) == is_followed
+
+
 def test_modifiers_are_applied_or_kept() -> None:
     source = shapes.cube(cuts=3)
     modifier = source.modifiers.new("Subdivision", "SUBSURF")
@@ -222,21 +271,6 @@ def test_one_failure_leaves_the_others() -> None:
     bpy.context.view_layer.update()
     assert bpy.ops.seamstress.quads(faces=500, original="REPLACE") == {"FINISHED"}
     assert near(len(monkey.data.polygons), 500, 0.1) and len(flat.data.polygons) == 16
-
-
-def test_instances_of_collections() -> None:
-    collection = bpy.data.collections.new("Part")
-    source = shapes.monkey()
-    bpy.context.collection.objects.unlink(source)
-    collection.objects.link(source)
-    instance = bpy.data.objects.new("Instance", None)
-    instance.instance_type, instance.instance_collection = "COLLECTION", collection
-    bpy.context.collection.objects.link(instance)
-    shapes.select(instance)
-    assert bpy.ops.seamstress.quads(faces=500, original="REPLACE") == {"FINISHED"}
-    assert near(len(source.data.polygons), 500, 0.1)
-    assert bpy.ops.seamstress.quads(faces=300, original="HIDE") == {"FINISHED"}
-    assert source.hide_viewport and [object.hide_viewport for object in collection.objects] == [True, False]
 
 
 def test_edges_that_cannot_be_followed_are_selected(capfd: pytest.CaptureFixture[str]) -> None:
