@@ -181,27 +181,25 @@ def painted():
 
 
 def strokes():
-    """A tube with strokes that wind around it."""
+    """An egg with strokes that wind around it."""
     import bpy
     import numpy as np
 
-    bpy.ops.mesh.primitive_cylinder_add(vertices=64, radius=0.8, depth=3.2, end_fill_type="NOTHING")
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5, radius=1.0)
     object = finished(bpy.context.object)
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.mesh.subdivide(number_cuts=15)
-    bpy.ops.object.mode_set(mode="OBJECT")
+    object.scale = (1.0, 1.0, 1.5)
+    bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
     bpy.ops.object.shade_smooth()
-    triangulated(object)
-    heights = np.linspace(-1.5, 1.5, 40)
+    rise = np.linspace(-1.0, 1.0, 60)
+    turns = [1.2 * np.arctanh(np.sin(rise)) + start * math.pi / 3.0 for start in range(6)]
+    lines = [np.column_stack([np.cos(rise) * np.cos(t), np.cos(rise) * np.sin(t), 1.5 * np.sin(rise)]) for t in turns]
     bpy.ops.object.grease_pencil_add(type="EMPTY")
     pencil = bpy.context.object
     drawing = pencil.data.layers.new("Guides").frames.new(1).drawing
-    drawing.add_strokes([len(heights)] * 4)
-    turns = [heights * 0.9 + start * math.pi / 2.0 for start in range(4)]
-    lines = np.array([np.column_stack([0.81 * np.cos(turn), 0.81 * np.sin(turn), heights]) for turn in turns])
-    drawing.attributes["position"].data.foreach_set("vector", lines.astype(np.float32).ravel())
-    # Grease pencil is not for this renderer.
+    drawing.add_strokes([len(line) for line in lines])
+    drawing.attributes["position"].data.foreach_set("vector", np.array(lines, np.float32).ravel())
+    # It would be seen through the egg; bars are not.
+    pencil.hide_render = True
     drawn = bpy.data.curves.new("Strokes", "CURVE")
     drawn.dimensions, drawn.bevel_depth = "3D", 0.02
     drawn.materials.append(material("clay", CLAY))
@@ -213,7 +211,7 @@ def strokes():
     for other in bpy.context.view_layer.objects:
         other.select_set(other is object)
     bpy.context.view_layer.objects.active = object
-    return object, lambda: quads(faces=900, guide_strokes={"GREASE_PENCIL"})
+    return object, lambda: quads(faces=1200, align=0.0, guide_strokes={"GREASE_PENCIL"})
 
 
 SCENES = {
