@@ -23,6 +23,9 @@ async function words() {
         edge_length: size('edge-length'),
         features: map.features,
         align: map.align,
+        adaptive: map.adaptive,
+        min_edge: map.min_edge,
+        max_edge: map.max_edge,
         smooth: shape.smooth,
         cone_bias: map.cone_bias,
     };

@@ -29,6 +29,8 @@ const input = h('input', { type: 'file', accept: [...ENDINGS, 'gz'].map((ending)
 const work = h('div', {});
 let file: MeshFile | undefined;
 let running: AbortController | undefined;
+/** Ends what is done before there is a mesh. */
+const warming = new AbortController();
 let shown: Panel | undefined;
 /** Triangles of the mesh, as far as known. */
 let triangles = 0;
@@ -90,6 +92,7 @@ async function make(task: Task, next?: string): Promise<void> {
     const mesh = file;
     if (!mesh) return;
     running?.abort();
+    warming.abort();
     const controller = running = new AbortController();
     const { signal } = controller;
     form.enabled = false;
@@ -153,7 +156,7 @@ function showOutcome(outcome: Outcome, seconds: number, next?: string): void {
         h('button', { type: 'button', class: 'button', onclick: () => {
             outcome.file(name).then((bytes) => { download(`${base}${ending}`, bytes as BlobPart, 'application/octet-stream'); }, fail);
         } }, ending.replace(/^.*\./, '').toUpperCase());
-    const [kind, formats] = scene.sides === 4 ? ['quads', ['obj', 'ply', 'glb']] : ['map', isMesh ? [] : ['obj', 'glb']];
+    const [kind, formats] = scene.sides === 4 ? ['quads', ['obj', 'ply', 'glb']] : ['map', isMesh ? [] : ['obj', 'ply', 'glb']];
     const saves = [...formats.map((format) => save(`_${kind}.${format}`)), save('.html', 'page.html')];
     side.replaceChildren(heading(result), h('p', { class: 'saves' }, 'Save as ', ...saves), ...sections(result, (vertices, faces) => { panel.goTo(vertices, faces); }));
     say(...[`Done in ${seconds.toFixed(1)} s.`, ...(next ? [next] : [])].map((text) => h('p', { class: 'meaning' }, text)));
@@ -194,4 +197,11 @@ if (isServed) {
 } else if ('serviceWorker' in navigator && location.protocol !== 'file:') {
     // Works without a network once it has been loaded.
     navigator.serviceWorker.register('offline.js').catch(() => undefined);
+}
+if (!isServed) {
+    // Browsers compile the method as it runs, for all workers: here with a sample, while nobody waits for it.
+    const warm = (): void => { engine.run({ surface: { repair: false }, make: { quads: {} } }, SAMPLES[0].make(), () => undefined, warming.signal).catch(() => undefined); };
+    // Safari cannot tell when a page is idle.
+    if ('requestIdleCallback' in window) requestIdleCallback(warm);
+    else setTimeout(warm, 1000);
 }

@@ -108,11 +108,12 @@ export class WorkerEngine implements Engine {
     }
 }
 
-/** Not as a stream, which would need a host that names the type of the file. */
+/** As a stream, whose machine code browsers keep for the next visit, from hosts that name the type of the file. */
 async function load(address: string): Promise<WebAssembly.Module> {
     const response = await fetch(address);
     if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
-    return WebAssembly.compile(await response.arrayBuffer());
+    const isNamed = response.headers.get('content-type') === 'application/wasm';
+    return isNamed ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
 }
 
 /** A browser gives a page 4 GB at most, and some much less. */

@@ -9,6 +9,14 @@ const KINDS: readonly (readonly [Kind, string])[] = [['quads', 'Quads'], ['map',
 const FEATURES: readonly (readonly [string, string])[] = [
     ['auto', 'Found by shape'], ['angle', 'Where it bends by an angle'], ['boundary', 'The boundary'], ['picked', 'Edges that I click on'], ['none', 'None'],
 ];
+/** Options of a map that are numbers: with their limits, and whether they are shown at once. */
+const NUMBERS = [
+    { option: 'align', text: 'Direction', limits: { min: 0, max: 1, step: 0.05 }, isShown: true },
+    { option: 'adaptive', text: 'Density', limits: { min: 0, max: 1, step: 0.05 }, isShown: true },
+    { option: 'min_edge', text: 'Least edge length', limits: { min: 0, step: 'any' }, isShown: false },
+    { option: 'max_edge', text: 'Largest edge length', limits: { min: 0, step: 'any' }, isShown: false },
+    { option: 'cone_bias', text: 'Cone bias', limits: { min: 0, step: 'any' }, isShown: false },
+] as const;
 
 function labelled(text: string, option: Option | undefined, control: HTMLElement): HTMLElement {
     const help = option && h('span', { class: 'meaning' }, helpOf(option));
@@ -26,9 +34,8 @@ export class Form {
     private readonly size = h('input', { type: 'number', min: 0, step: 'any', value: 1500, 'aria-label': 'Number of quads, or edge length' });
     private readonly features = h('select', {}, ...FEATURES.map(([value, name]) => h('option', { value }, name)));
     private readonly angle = h('input', { type: 'number', min: 1, max: 180, value: 40, 'aria-label': 'Angle in degrees' });
-    private readonly align = h('input', { type: 'number', min: 0, max: 1, step: 0.1, placeholder: 'usual' });
+    private readonly numbers = NUMBERS.map((number) => ({ ...number, control: h('input', { type: 'number', placeholder: 'usual', ...number.limits }) }));
     private readonly smooth = h('input', { type: 'number', min: 0, max: 100, value: 0 });
-    private readonly bias = h('input', { type: 'number', min: 0, step: 'any', placeholder: 'usual' });
     private readonly repair = h('input', { type: 'checkbox' });
     private readonly start = h('button', { type: 'submit', class: 'button primary' }, 'Make it');
 
@@ -53,8 +60,8 @@ export class Form {
     task(): Task {
         const surface = { repair: this.repair.checked };
         const features = this.sources();
-        const given = (name: string, { value }: HTMLInputElement): Record<string, number> => value === '' ? {} : { [name]: Number(value) };
-        const map = { features, ...given('align', this.align), ...given('cone_bias', this.bias) };
+        const given = this.numbers.filter(({ control }) => control.value !== '').map(({ option, control }) => [option, Number(control.value)] as const);
+        const map = { features, ...Object.fromEntries(given) };
         switch (this.kind) {
             case 'check': return { surface, make: { check: features } };
             case 'map': return { surface, make: { map } };
@@ -89,11 +96,11 @@ export class Form {
         const help = this.isPicking ? 'Click on edges of the mesh; a second click takes one back' : helpOf('features');
         fields.push(h('div', { class: 'field' }, h('label', { for: 'features' }, 'Features'), h('span', { class: 'pair' }, this.features, ...angle), h('span', { class: 'meaning' }, help)));
         this.features.id = 'features';
-        if (this.kind !== 'check') fields.push(labelled('Direction', 'align', this.align));
+        const numbers = this.kind === 'check' ? [] : this.numbers;
+        const shown = (isShown: boolean): HTMLElement[] => numbers.filter((number) => number.isShown === isShown).map(({ text, option, control }) => labelled(text, option, control));
+        fields.push(...shown(true));
         fields.push(labelled('Repair', 'repair', this.repair));
-        const more: HTMLElement[] = [];
-        if (this.kind === 'quads') more.push(labelled('Rounds of smoothing', 'smooth', this.smooth));
-        if (this.kind !== 'check') more.push(labelled('Cone bias', 'cone_bias', this.bias));
+        const more = [...(this.kind === 'quads' ? [labelled('Rounds of smoothing', 'smooth', this.smooth)] : []), ...shown(false)];
         if (more.length > 0) fields.push(h('details', {}, h('summary', {}, 'More'), ...more));
         this.fields.replaceChildren(...fields);
     }

@@ -2,7 +2,7 @@
 
 declare const WORDS: Readonly<Record<string, string>>;
 
-export type Option = 'repair' | 'quads' | 'edge_length' | 'features' | 'align' | 'smooth' | 'cone_bias';
+export type Option = 'repair' | 'quads' | 'edge_length' | 'features' | 'align' | 'adaptive' | 'min_edge' | 'max_edge' | 'smooth' | 'cone_bias';
 
 /** What an option does: the first sentence of its help. */
 export function helpOf(option: Option): string {

@@ -109,7 +109,7 @@ impl Map {
         self.0.report().map_err(|cause| errors::internal(py, &cause.to_string()))
     }
 
-    /// The content of a file of this name: OBJ or GLB.
+    /// The content of a file of this name: OBJ, PLY or GLB.
     fn file<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| self.0.file(name))?))
     }

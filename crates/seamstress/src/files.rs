@@ -28,7 +28,7 @@ impl From<WriteError> for Error {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Output {
-    /// A map, as OBJ or GLB.
+    /// A map, as OBJ, PLY or GLB.
     Map,
     /// Quads, as OBJ, OFF, PLY, STL or GLB.
     Quads,
@@ -44,7 +44,7 @@ impl Output {
     /// [`ErrorKind::Unwritable`].
     pub fn check_name(self, path: &Path) -> Result<(), Error> {
         let (what, endings) = match self {
-            Self::Map => ("maps", &["obj", "glb"][..]),
+            Self::Map => ("maps", &["obj", "ply", "glb"][..]),
             Self::Quads => ("quad meshes", &["obj", "off", "ply", "stl", "glb"][..]),
             Self::Picture => ("pictures", &["png"][..]),
         };

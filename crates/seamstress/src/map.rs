@@ -209,7 +209,7 @@ impl<R> SeamlessMap<R> {
 
 #[cfg(feature = "io")]
 impl<R: Described> SeamlessMap<R> {
-    /// Writes it as OBJ or GLB, by the ending of the name, with the positions, faces and attributes of the surface; the
+    /// Writes it as OBJ, PLY or GLB, by the ending of the name, with the positions, faces and attributes of the surface; the
     /// file appears when it is complete.
     ///
     /// # Errors
@@ -220,7 +220,7 @@ impl<R: Described> SeamlessMap<R> {
         crate::files::Output::Map.write(path, write)
     }
 
-    /// Writes it in the format that a file of this name has: OBJ or GLB. OBJ if it says none.
+    /// Writes it in the format that a file of this name has: OBJ, PLY or GLB. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.

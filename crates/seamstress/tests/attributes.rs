@@ -252,6 +252,14 @@ mod files {
             assert_eq!(uv.of(corner), expected);
         }
         assert_eq!(named(&obj, "color").values, named(&surface, "color").values);
+        let mut bytes = Vec::new();
+        map.write_as("m.ply", UvSet::First, &mut bytes).unwrap();
+        let ply = read(&bytes, "m.ply");
+        assert_eq!((ply.positions(), ply.faces()), (surface.positions(), surface.faces()));
+        let uv = named(&ply, "uv");
+        for (corner, expected) in map.corner_uvs().iter().enumerate() {
+            assert_eq!(uv.of(corner), expected.map(|x| f64::from(x as f32)));
+        }
         let chrome = named(&obj, "material").rows.iter().filter(|&&row| row == 1).count();
         assert_eq!(chrome, 2 * 20);
         assert_eq!(obj.attributes().material_files, ["paint.mtl"]);

@@ -26,16 +26,18 @@ async function makesQuads(page) {
     await sample(page, 'Step');
     await page.getByLabel('Number of quads, or edge length').fill('300');
     await page.getByLabel('Direction').fill('0.5');
+    await page.getByLabel('Density').fill('0.25');
     await start(page);
     await page.locator('.kind', { hasText: 'Quad mesh' }).waitFor();
     const path = await save(page, 'OBJ');
     const quality = JSON.parse(run('quality', path, '--json'));
-    const { count, align } = await page.evaluate(() => {
+    const { count, align, adaptive } = await page.evaluate(() => {
         const { scene, result } = window.panels[0].model;
-        return { count: scene.corners.length / 4, align: result.report.options.map.align };
+        const { align, adaptive } = result.report.options.map;
+        return { count: scene.corners.length / 4, align, adaptive };
     });
     expect(quality.topology.polygons['4'] === count && quality.topology.bad_edges === 0, JSON.stringify(quality.topology).slice(0, 300));
-    expect(align === 0.5, `the direction is that of the form, not ${align}`);
+    expect(align === 0.5 && adaptive === 0.25, `direction ${align} and density ${adaptive} are those of the form`);
     const binary = readFileSync(await save(page, 'GLB'));
     expect(binary.readUInt32LE(8) === binary.length, 'the GLB file says its length');
     const ply = JSON.parse(run('quality', await save(page, 'PLY'), '--json'));
@@ -76,6 +78,12 @@ async function makesAMap(page) {
     await page.evaluate((face) => { window.panels[0].pick(face); }, tau.worst);
     const text = await page.locator('.readout').textContent();
     expect(text.includes(`tau ${tau.max.toFixed(4)}`), text);
+    // In single precision.
+    const uvs = (file) => run('measure', bracket, file, '--json');
+    for (const kind of ['PLY', 'GLB']) {
+        const other = JSON.parse(uvs(await save(page, kind))).measures.find(({ measure }) => measure === 'tau');
+        expect(Math.abs(other.max / tau.max - 1) < 1e-4, `${kind}: ${other.max} is not ${tau.max}`);
+    }
     const html = readFileSync(await save(page, 'HTML'), 'utf8');
     expect(html.startsWith('<!doctype html>'), 'the page is saved as one file');
 }

@@ -8,7 +8,7 @@ import { basename, join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { folder, launch, open, root, run } from './browser.mjs';
 import { host, program } from './places.mjs';
-import { ball } from './steps.mjs';
+import { ball, done, drop, makeMap } from './steps.mjs';
 
 const pkg = join(root, 'web/dist/pkg');
 /** The method of the page for this machine: `cargo build --release --manifest-path crates/wasm/Cargo.toml --example task`. */
@@ -45,6 +45,25 @@ async function frame(browser) {
     });
     await page.context().close();
     return `${time.toFixed(0)} ms: ${triangles} triangles, 1200 by 800, ${renderer}`;
+}
+
+/** Seconds that the first map of a page takes, and the next: when it starts at once, and after the page had time to warm up. */
+async function firstMaps(browser) {
+    const of = [];
+    for (const pause of [0, 5000]) {
+        const { address, stop } = await host();
+        const page = await open(browser, address);
+        await page.waitForTimeout(pause);
+        await drop(page, 'spot.obj', readFileSync(join(root, 'samples/spot.obj')));
+        await done(page);
+        for (const k of [0, 1]) {
+            await makeMap(page);
+            of.push(`${(await page.locator('.status').textContent()).match(/[\d.]+ s/)[0]} ${['the first', 'the next'][k]}`);
+        }
+        await page.context().close();
+        stop();
+    }
+    return `at once ${of[0]}, ${of[1]}; after five seconds ${of[2]}, ${of[3]}`;
 }
 
 /** Seconds of computation that some work takes. */
@@ -89,6 +108,7 @@ const browser = await launch();
 say('Page of the program, first paint', await firstPaint(browser, program));
 say('Page of a host, first paint', await firstPaint(browser, host));
 say('Frame', await frame(browser));
+say('Maps of spot in a page of a host', await firstMaps(browser));
 await browser.close();
 const method = readFileSync(join(pkg, 'seamstress_wasm_bg.wasm'));
 say('WebAssembly', `${method.length} bytes, ${gzipSync(method, { level: 9 }).length} compressed`);

@@ -40,7 +40,7 @@ pub(crate) struct IntegerArgs {
     #[arg(value_name = "MAP.obj")]
     map: Option<PathBuf>,
 
-    /// Write the integer-grid map to this OBJ or GLB file, replacing an existing one
+    /// Write the integer-grid map to this OBJ, PLY or GLB file, replacing an existing one
     #[arg(short, long, value_name = "INT.obj")]
     output: PathBuf,
 

@@ -39,7 +39,7 @@ pub(crate) struct MapArgs {
     /// The mesh to map: OBJ, OFF, PLY, STL or glTF, also compressed with gzip; `-` is standard input
     mesh: PathBuf,
 
-    /// Write the map to this OBJ or GLB file, replacing an existing one; `-` is standard output, as OBJ
+    /// Write the map to this OBJ, PLY or GLB file, replacing an existing one; `-` is standard output, as OBJ
     #[arg(short, long, value_name = "MAP.obj")]
     output: PathBuf,
 

@@ -79,7 +79,7 @@ impl FieldLayout {
         named(&self.report.violations)
     }
 
-    /// Writes it in the format that a file of this name has: OBJ or GLB. OBJ if it says none.
+    /// Writes it in the format that a file of this name has: OBJ, PLY or GLB. OBJ if it says none.
     ///
     /// # Errors
     /// Those of the writer.

@@ -61,9 +61,24 @@ impl Task {
     pub fn parse(json: &str) -> Result<Self, Error> {
         let task: Self =
             serde_json::from_str(json).map_err(|error| Error::options(error.to_string()))?;
-        match task.features().sources().iter().find_map(FeatureSource::file) {
-            Some(_) => Err(Error::options("features cannot come from a file here")),
-            None => Ok(task),
+        let has_files = match (task.map_options(), task.features()) {
+            (Some(options), _) => options.files().next().is_some(),
+            (None, features) => features.sources().iter().any(|source| source.file().is_some()),
+        };
+        match has_files {
+            true => {
+                Err(Error::options("features, directions and sizes cannot come from a file here"))
+            }
+            false => Ok(task),
+        }
+    }
+
+    fn map_options(&self) -> Option<&MapOptions> {
+        match &self.make {
+            Make::Check(_) => None,
+            Make::Map(options) => Some(options),
+            Make::Integer(options) => Some(&options.map),
+            Make::Quads(options) => Some(&options.map),
         }
     }
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::{
-    CertifyOptions, Features, GridSize, Inspection, MapOptions, QuadOptions, SurfaceOptions,
+    CertifyOptions, ErrorKind, Features, GridSize, Inspection, MapOptions, QuadOptions,
+    SurfaceOptions,
 };
 use flate2::read::ZlibDecoder;
 use seamstress_testkit as kit;
@@ -141,4 +142,23 @@ fn a_preview_is_made_of_a_coarser_mesh_with_the_edges_that_were_picked() {
     );
     assert_eq!(facts["report"]["features"]["edges"], 2);
     assert!(done.file("ball.stl").is_err() && !done.file("ball.obj").unwrap().is_empty());
+}
+
+#[cfg(feature = "io")]
+#[test]
+fn no_task_names_a_file() {
+    let named =
+        |task: &str| Task::parse(task).is_err_and(|error| error.kind() == ErrorKind::Options);
+    for option in ["features\": [\"pairs:x", "directions\": [\"strokes:x", "sizes\": [\"csv:x"] {
+        let map = format!("{{\"{option}\"]}}");
+        for make in [
+            format!("{{\"map\": {map}}}"),
+            format!("{{\"integer\": {{\"map\": {map}}}}}"),
+            format!("{{\"quads\": {{\"map\": {map}}}}}"),
+        ] {
+            assert!(named(&format!("{{\"make\": {make}}}")), "{make}");
+        }
+    }
+    assert!(named(r#"{"make": {"check": ["pairs:x"]}}"#));
+    assert!(Task::parse(r#"{"make": {"map": {"sizes": ["boundary:0.5"]}}}"#).is_ok());
 }
