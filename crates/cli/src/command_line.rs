@@ -115,9 +115,10 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 22] = [
+const RARE: [&str; 23] = [
     "uv_set",
     "raw",
+    "source_points",
     "corner_angle",
     "directions",
     "sizes",

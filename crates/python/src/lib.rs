@@ -2,6 +2,7 @@
 //! reports as JSON. The other half, in Python, makes arrays and classes of them.
 
 mod arrays;
+mod attributes;
 mod command;
 mod errors;
 mod json;

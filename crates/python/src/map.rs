@@ -17,7 +17,7 @@ pub(crate) struct Map(Box<dyn Mapped>);
 trait Mapped: Send + Sync {
     fn parts(&self) -> Parts<'_>;
     fn report(&self) -> serde_json::Result<String>;
-    fn file(&self, name: &str) -> std::io::Result<Vec<u8>>;
+    fn file(&self, name: &str, set: UvSet) -> std::io::Result<Vec<u8>>;
     fn pictures(&self, texture: &TextureOptions) -> Result<[Vec<u8>; 3], Error>;
     fn field(&self) -> Result<seamstress::CrossField, Error>;
 }
@@ -46,9 +46,9 @@ impl<R: Described + Serialize + Send + Sync> Mapped for SeamlessMap<R> {
         serde_json::to_string(SeamlessMap::report(self))
     }
 
-    fn file(&self, name: &str) -> std::io::Result<Vec<u8>> {
+    fn file(&self, name: &str, set: UvSet) -> std::io::Result<Vec<u8>> {
         let mut content = Vec::new();
-        self.write_as(name, UvSet::First, &mut content)?;
+        self.write_as(name, set, &mut content)?;
         Ok(content)
     }
 
@@ -109,9 +109,16 @@ impl Map {
         self.0.report().map_err(|cause| errors::internal(py, &cause.to_string()))
     }
 
-    /// The content of a file of this name: OBJ, PLY or GLB.
-    fn file<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &py.detach(|| self.0.file(name))?))
+    /// The content of a file of this name: OBJ, PLY or GLB, with the map as the `first` or the `second` set of UVs.
+    #[pyo3(signature = (name, uv_set = "first"))]
+    fn file<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        uv_set: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let set = if uv_set == "second" { UvSet::Second } else { UvSet::First };
+        Ok(PyBytes::new(py, &py.detach(|| self.0.file(name, set))?))
     }
 
     /// Front, back and layout, as PNG files; options as JSON.

@@ -1,11 +1,12 @@
 //! Quad meshes, cross fields and feature curves.
 
 use crate::arrays::{array, numbers};
+use crate::attributes::{self, Told};
 use crate::errors;
 use crate::json::{json, options};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes};
-use seamstress::{Attribute, AttributeDomain, AttributeKind};
+use seamstress::{Attribute, AttributeKind};
 
 /// A quad mesh.
 #[pyclass(frozen, module = "seamstress_mesh._native")]
@@ -51,11 +52,7 @@ impl Quads {
         on: &str,
         is_label: bool,
     ) -> PyResult<Bound<'py, PyByteArray>> {
-        let domain = match on {
-            "vertex" => AttributeDomain::Vertex,
-            "corner" => AttributeDomain::Corner,
-            _ => AttributeDomain::Face,
-        };
+        let domain = attributes::domain(on);
         let kind = if is_label { AttributeKind::Label } else { AttributeKind::Number };
         let values: Vec<f64> = numbers(values);
         let attribute = Attribute::new("values", domain, kind, width, Vec::new());
@@ -64,6 +61,12 @@ impl Quads {
         let carried = carried.map_err(|error| errors::exception(py, &error))?;
         let rows = carried.iter().flat_map(|c| c.rows.iter().flat_map(|&row| c.row(row))).copied();
         array(py, &rows.collect::<Vec<f64>>())
+    }
+
+    /// What the surface carries, on the quads.
+    fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Told<'py>>> {
+        let carried = py.detach(|| self.0.attributes());
+        attributes::told(py, &carried.map_err(|error| errors::exception(py, &error))?.all)
     }
 
     /// The report as JSON.

@@ -1,6 +1,8 @@
 //! Surfaces, and what is made of them. Options come as JSON, reports go as JSON.
 
 use crate::arrays::{array, numbers, rows};
+use crate::attributes::{self, Given, Told};
+use crate::errors;
 use crate::json::{json, options};
 use crate::map::Map;
 use crate::quads::{CrossField, Curves, Quads};
@@ -103,6 +105,17 @@ impl Surface {
     fn input_faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
         let faces = (0..self.0.faces().len() as u32).filter_map(|f| self.0.input_face(f));
         array(py, &faces.collect::<Vec<_>>())
+    }
+
+    /// What it carries, for the elements of its input.
+    fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Told<'py>>> {
+        attributes::told(py, &self.0.attributes().all)
+    }
+
+    /// The same surface with other attributes.
+    fn with_attributes(&self, py: Python<'_>, given: Vec<Given>) -> PyResult<Self> {
+        let changed = self.0.clone().with_attributes(attributes::given(given).into());
+        changed.map(Self).map_err(|error| errors::exception(py, &error))
     }
 
     /// The report as JSON.

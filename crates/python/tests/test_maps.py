@@ -187,3 +187,61 @@ def test_values_are_transferred_to_quads() -> None:
         q.transfer([1.0, 2.0, 3.0])
     with pytest.raises(sm.InputError, match="none of vertex, corner and face"):
         q.transfer(side, on="edge")  # type: ignore[arg-type]
+
+
+def test_what_a_mesh_carries_is_seen_and_can_be_given(tmp_path: Path) -> None:
+    v, quads = cube(4)
+    side = np.arange(len(quads)) // 16
+    corners = v[np.array(quads)].reshape(-1, 3)
+    names = np.array(["up", "down"])[side % 2]
+    given = [
+        sm.Attribute("size", "vertex", np.where(v[:, 0] > 0.5, 1.0, 2.0)),
+        sm.Attribute("paint", "vertex", np.column_stack([v, 1.0 - v[:, :1]]), "color"),
+        sm.Attribute("map", "corner", corners[:, :2] + side.repeat(4)[:, None], "uv"),
+        sm.Attribute("material", "face", names),
+        sm.Attribute("side", "face", side),
+    ]
+    plain = sm.Surface(v, quads)
+    surface = plain.with_attributes(given)
+    assert plain.attributes == [] and len(surface.attributes) == len(given)
+    for found, wanted in zip(surface.attributes, given):
+        assert (found.name, found.on) == (wanted.name, wanted.on)
+        assert found.kind == (wanted.kind or ("label" if wanted.on == "face" else "number"))
+        assert (found.values == wanted.values).all()
+    q = surface.quad_mesh(600, sizes="property:size")
+    on_quads = {attribute.name: attribute for attribute in q.attributes}
+    assert np.allclose(on_quads["paint"].values[:, :3], q.vertices, atol=1e-9)
+    assert set(on_quads["material"].values) == {"up", "down"} and len(on_quads["side"].values) == len(q.quads)
+    x = q.vertices[q.quads].mean(axis=1)[:, 0]
+    assert np.count_nonzero(x > 0.75) > 1.5 * np.count_nonzero(x < 0.25)
+    with pytest.raises(sm.InputError, match="values for 3"):
+        plain.with_attributes([sm.Attribute("short", "vertex", np.ones(3))])
+    with pytest.raises(sm.InputError, match="on 'edge'"):
+        plain.with_attributes([sm.Attribute("odd", "edge", np.ones(3))])  # type: ignore[arg-type]
+    q.write(tmp_path / "q.obj")
+    assert "usemtl up" in (tmp_path / "q.obj").read_text()
+
+
+def test_source_points_are_written(tmp_path: Path) -> None:
+    v, quads = cube(4)
+    q = sm.Surface(v, quads).quad_mesh(96, raw=True, source_points=True)
+    carried = {attribute.name: attribute.values for attribute in q.attributes}
+    at = (v[carried["source_vertex"]] * carried["source_weight"][:, :, None]).sum(axis=1)
+    assert np.allclose(at, q.vertices)
+    q.write(tmp_path / "q.ply")
+    assert b"property double source_weight_2" in (tmp_path / "q.ply").read_bytes()
+
+
+def test_a_map_is_the_first_set_of_uvs_or_the_second(tmp_path: Path) -> None:
+    v, f = sphere()
+    own = sm.Attribute("own", "vertex", v[:, :2] + 7.0, "uv")
+    m = sm.Surface(v, f).with_attributes([own]).parametrize()
+    found = {}
+    for which in ("first", "second"):
+        path = tmp_path / f"{which}.glb"
+        m.write(path, uv_set=which)  # type: ignore[arg-type]
+        sets = [attribute for attribute in sm.read(path).attributes if attribute.kind == "uv"]
+        found[which] = [bool(uv.values.min() > 5.0) for uv in sets]
+    assert found == {"first": [False, True], "second": [True, False]}
+    with pytest.raises(sm.InputError, match="neither first nor second"):
+        m.write(tmp_path / "third.glb", uv_set="third")  # type: ignore[arg-type]

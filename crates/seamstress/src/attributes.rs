@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind};
 use crate::quads::QuadMesh;
 use crate::surface::Surface;
-use seamstress_mesh::attributes::{Attribute, AttributeDomain, Attributes};
+use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind, Attributes};
 use seamstress_quads::Transfer;
 use std::sync::Arc;
 
@@ -93,16 +93,38 @@ impl Surface {
 
 impl QuadMesh {
     /// What the surface carries, brought over to the quads, as [`QuadMesh::transfer`] does; but what has the same value at
-    /// all corners of every vertex is an attribute of vertices, and what has not one of corners.
+    /// all corners of every vertex is an attribute of vertices, and what has not one of corners. With
+    /// [`source_points`](crate::ShapeOptions::source_points) also where each vertex comes from.
     ///
     /// # Errors
     /// A fault of this program.
     pub fn attributes(&self) -> Result<Attributes, Error> {
         let carried = self.surface().attributes();
-        let all = self.carry(&carried.all, |_, on_triangles| on_triangles.domain)?;
+        let mut all = self.carry(&carried.all, |_, on_triangles| on_triangles.domain)?;
+        if self.writes_sources() {
+            all.extend(self.source_points());
+        }
         let mut attributes = Attributes::from(all);
         attributes.material_files.clone_from(&carried.material_files);
         Ok(attributes)
+    }
+
+    /// The point of the input that each vertex comes from: a face, three of its corners, and their weights.
+    fn source_points(&self) -> [Attribute; 3] {
+        let (surface, points) = (self.surface(), self.sources());
+        let of_vertices = |name, kind, width, values| {
+            Attribute::new(name, AttributeDomain::Vertex, kind, width, values)
+        };
+        let id = |id: Option<u32>| f64::from(id.unwrap_or_default());
+        let faces = points.iter().map(|at| id(surface.input_face(at.face)));
+        let vertices = points.iter().flat_map(|at| surface.faces()[at.face as usize]);
+        let vertices = vertices.map(|v| id(surface.input_vertex(v)));
+        let weights = points.iter().flat_map(|at| at.barycentric);
+        [
+            of_vertices("source_face", AttributeKind::Label, 1, faces.collect()),
+            of_vertices("source_vertex", AttributeKind::Label, 3, vertices.collect()),
+            of_vertices("source_weight", AttributeKind::Number, 3, weights.collect()),
+        ]
     }
 
     /// Attributes of the input of the surface, brought over to the quads.

@@ -32,6 +32,8 @@ pub enum Output {
     Map,
     /// Quads, as OBJ, OFF, PLY, STL or GLB.
     Quads,
+    /// Quads with the points that their vertices come from, as PLY.
+    SourcePoints,
     /// A picture, as PNG.
     Picture,
 }
@@ -46,6 +48,7 @@ impl Output {
         let (what, endings) = match self {
             Self::Map => ("maps", &["obj", "ply", "glb"][..]),
             Self::Quads => ("quad meshes", &["obj", "off", "ply", "stl", "glb"][..]),
+            Self::SourcePoints => ("source points", &["ply"][..]),
             Self::Picture => ("pictures", &["png"][..]),
         };
         let name = match seamstress_io::is_compressed(path) {

@@ -340,7 +340,7 @@ impl IntegerMapOptions {
     }
 }
 
-/// What is done to the vertices of extracted quads.
+/// What is done to the vertices of extracted quads, and said of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -355,6 +355,11 @@ pub struct ShapeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 0,
         value_parser = clap::value_parser!(u32).range(0..=1000)))]
     pub smooth: u32,
+
+    /// Write the point of the input that the map has each vertex at, as properties of vertices in PLY: `source_face`,
+    /// `source_vertex_0` to `_2`, corners of that face, counted from 0, and `source_weight_0` to `_2`, their weights
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub source_points: bool,
 }
 
 /// Options of [`Surface::quad_mesh`](crate::Surface::quad_mesh).

@@ -43,6 +43,7 @@ pub struct QuadMesh {
     extraction: Extraction,
     irregular: Vec<IrregularVertex>,
     report: QuadMeshReport,
+    writes_sources: bool,
 }
 
 /// How quads were made, and what they are.
@@ -281,6 +282,11 @@ impl QuadMesh {
         &self.report
     }
 
+    /// Whether files say where vertices come from, as far as they can.
+    pub(crate) fn writes_sources(&self) -> bool {
+        self.writes_sources
+    }
+
     /// Writes it as OBJ, OFF, PLY, or STL or GLB (two triangles a quad), by the ending of the name, with what the surface
     /// carries and the format holds; the file appears when it is complete.
     ///
@@ -289,10 +295,15 @@ impl QuadMesh {
     #[cfg(feature = "io")]
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        crate::files::Output::Quads.write(path, |file| self.write_as(path, file))
+        let output = match self.writes_sources {
+            true => crate::files::Output::SourcePoints,
+            false => crate::files::Output::Quads,
+        };
+        output.write(path, |file| self.write_as(path, file))
     }
 
-    /// Writes it in the format that a file of this name has: OBJ, OFF, PLY, STL or GLB. OBJ if it says none.
+    /// Writes it in the format that a file of this name has: OBJ, OFF, PLY, STL or GLB. If it says none, OBJ, or PLY with
+    /// [`source_points`](ShapeOptions::source_points).
     ///
     /// # Errors
     /// Those of the writer.
@@ -304,8 +315,12 @@ impl QuadMesh {
         let attributes = &self.attributes().map_err(io::Error::other)?;
         let (positions, polygons, comments) = (self.positions(), self.quads(), &comments[..]);
         let mesh = seamstress_io::Polymesh { positions, polygons, attributes, comments };
+        let otherwise = match self.writes_sources {
+            true => seamstress_io::Format::Ply,
+            false => seamstress_io::Format::Obj,
+        };
         let format = seamstress_io::Format::from_path(name.as_ref());
-        mesh.write(writer, format.unwrap_or(seamstress_io::Format::Obj))
+        mesh.write(writer, format.unwrap_or(otherwise))
     }
 }
 
@@ -430,7 +445,8 @@ impl Surface {
                 orientation: Some(shaped.1),
             };
             let irregular = connectivity.irregular_vertices();
-            Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
+            let (surface, writes_sources) = (self.clone(), options.shape.source_points);
+            Ok(QuadMesh { surface, extraction, irregular, report, writes_sources })
         });
         made.map_err(|error| error.of(self.input()))
     }
@@ -497,7 +513,8 @@ impl Surface {
                 orientation,
             };
             let irregular = irregular.unwrap_or_default();
-            Ok(QuadMesh { surface: self.clone(), extraction, irregular, report })
+            let (surface, writes_sources) = (self.clone(), options.shape.source_points);
+            Ok(QuadMesh { surface, extraction, irregular, report, writes_sources })
         });
         made.map_err(|error| error.of(self.input()))
     }

@@ -124,6 +124,32 @@ fn copies_of_a_vertex_keep_their_values_when_they_are_merged() {
 }
 
 #[test]
+fn vertices_say_where_they_come_from() {
+    let (positions, squares) = block();
+    let surface = Surface::from_polygons(&positions, &squares).unwrap();
+    let mut options = QuadOptions::count(150);
+    (options.shape.raw, options.shape.source_points) = (true, true);
+    let quads = surface.quad_mesh(&options).unwrap();
+    let carried = quads.attributes().unwrap().all;
+    let [face, vertex, weight] = &carried[..] else { panic!("{} attributes", carried.len()) };
+    let names = [face, vertex, weight].map(|attribute| attribute.name.as_str());
+    assert_eq!(names, ["source_face", "source_vertex", "source_weight"]);
+    for (v, p) in quads.positions().iter().enumerate() {
+        let square = squares[face.of(v)[0] as usize].map(f64::from);
+        let (corners, weights) = (vertex.of(v), weight.of(v));
+        assert!(corners.iter().all(|corner| square.contains(corner)), "{corners:?} {square:?}");
+        for k in 0..3 {
+            let corners = corners.iter().map(|&corner| positions[corner as usize][k]);
+            let at: f64 = corners.zip(weights).map(|(x, weight)| x * weight).sum();
+            assert!((at - p[k]).abs() < 1e-9, "{v}: {at} {}", p[k]);
+        }
+    }
+    options.shape.source_points = false;
+    let quads = surface.quad_mesh(&options).unwrap();
+    assert_eq!(quads.attributes().unwrap().all.len(), 0);
+}
+
+#[test]
 fn values_that_do_not_fit_are_refused() {
     let (positions, polygons) = block();
     let surface = Surface::from_polygons(&positions, &polygons).unwrap();

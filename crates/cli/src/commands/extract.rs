@@ -68,7 +68,8 @@ impl Command for ExtractArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        self.files.plan(&self.map, self.features.iter().filter_map(FeatureSource::file))
+        let others = self.features.iter().filter_map(FeatureSource::file);
+        self.files.plan(&self.map, others, self.options.shape)
     }
 
     fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {

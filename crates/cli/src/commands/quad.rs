@@ -84,7 +84,7 @@ impl Command for QuadArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        self.files.plan(&self.mesh, self.options().map.files())
+        self.files.plan(&self.mesh, self.options().map.files(), self.shape)
     }
 
     fn make(&self, session: &Session) -> Result<QuadMesh, Failure> {

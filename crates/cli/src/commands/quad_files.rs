@@ -3,7 +3,7 @@
 use super::{inputs, reports, targets};
 use crate::failure::Failure;
 use crate::output::{Kind, Plan, Target};
-use seamstress::{Error, QuadMesh, ViewOptions};
+use seamstress::{Error, Output, QuadMesh, ShapeOptions, ViewOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct QuadFiles {
     /// Write the quad mesh to this OBJ, OFF, PLY, STL or GLB file, replacing an existing one; `-` is standard output,
-    /// as OBJ
+    /// as OBJ (with `--source-points` as PLY)
     ///
     /// What the mesh carries comes along as far as the format holds it: UVs with their seams, materials, groups, colours,
     /// normals and other properties. STL and GLB have two triangles for each quad. A name that ends in `.gz` is compressed.
@@ -33,7 +33,11 @@ impl QuadFiles {
         &self,
         input: &'a Path,
         others: impl IntoIterator<Item = &'a Path>,
+        shape: ShapeOptions,
     ) -> Result<Plan, Failure> {
+        if shape.source_points {
+            Output::SourcePoints.check_name(&self.output)?;
+        }
         let mut files = targets(Kind::Picture, &self.picture);
         files.extend(reports(&self.report));
         files.extend(targets(Kind::Quads, [&self.output]));

@@ -113,6 +113,26 @@ fn pictures_reports_and_ply_are_written_together() {
 }
 
 #[test]
+fn source_points_are_written_where_the_format_holds_them() {
+    let folder = Folder::new();
+    folder.write_obj("cube.obj", &kit::subdivide(&kit::cube()));
+    let quad = ["quad", "cube.obj", "--quads", "100", "--source-points", "-o"];
+    let to = |name: &'static str| [&quad[..], &[name]].concat();
+    // A name without an ending has the one format that holds them.
+    for name in ["q.ply", "q"] {
+        folder.expect(0, &to(name));
+        let ply = std::fs::read(folder.path(name)).unwrap();
+        let header = String::from_utf8_lossy(&ply[..1000]).into_owned();
+        for property in ["int source_face", "int source_vertex_2", "double source_weight_0"] {
+            assert!(header.contains(&format!("property {property}\n")), "{header}");
+        }
+    }
+    let refused = folder.expect(2, &to("q.obj"));
+    assert!(refused.stderr.contains("source points are written as PLY, not OBJ"), "{refused:?}");
+    assert_eq!(folder.names(), ["cube.obj", "q", "q.ply"]);
+}
+
+#[test]
 fn exactly_one_size_is_needed_and_bad_meshes_are_refused() {
     let folder = Folder::new();
     folder.write_obj("cube.obj", &kit::cube());

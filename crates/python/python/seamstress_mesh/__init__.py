@@ -10,12 +10,14 @@ Every map that is returned is certified: no triangle is flipped, every seam fits
 degrees. Keywords are the flags of the ``seamstress`` command, and reports are its reports.
 """
 
+from ._attributes import Attribute
 from ._errors import InputError, NoCertifiedMap, SeamstressError, Stopped
 from ._native import __version__
 from ._results import CrossField, FeatureCurves, IntegerGridMap, Measurements, QuadMesh, SeamlessMap, Verdict
 from ._surface import Surface, read
 
 __all__ = [
+    "Attribute",
     "CrossField",
     "FeatureCurves",
     "InputError",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from . import _native
+from . import _attributes, _native
 from ._arrays import Floats, Ints, float_rows, int_rows, value_rows
 from ._errors import InputError
 from ._html import figure, page
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Self
 
+    from ._attributes import Attribute
     from ._surface import Surface
 
 Native = TypeVar("Native", _native.Map, _native.Quads)
@@ -34,7 +35,7 @@ class _Made(Generic[Native]):
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes it in the format that the ending of the name says, the bytes of the command line; the file appears when
-        it is complete. Maps are written as OBJ alone, and so are quads after pickling.
+        it is complete. After pickling that is OBJ alone.
         """
         name = os.fspath(path)
         _native.write_file(name, self._kind, self._file(name))
@@ -92,6 +93,16 @@ class SeamlessMap(_Made[_native.Map]):
             json.loads(made.report()),
             made,
         )
+
+    def write(self, path: str | os.PathLike[str], *, uv_set: Literal["first", "second"] = "first") -> None:
+        """Writes it as OBJ, PLY or GLB, the bytes of the command line; the file appears when it is complete. In GLB its UVs are
+        the ``first`` set or, after the first of the mesh, the ``second``. After pickling it is written as OBJ alone.
+        """
+        if uv_set not in ("first", "second"):
+            raise InputError(f"uv_set: {uv_set!r} is neither first nor second")
+        name, made = os.fspath(path), self._made
+        content = self._file(name) if isinstance(made, bytes) else made.file(name, uv_set)
+        _native.write_file(name, self._kind, content)
 
     @property
     def corner_uv(self) -> Floats:
@@ -200,6 +211,13 @@ class QuadMesh(_Made[_native.Quads]):
         leading = {"vertex": (len(self.vertices),), "corner": (*self.quads.shape,), "face": (len(self.quads),)}[on]
         found = float_rows(carried, rows.shape[1])
         return found.reshape(leading + shape) if labels is None else labels[found[:, 0].astype(np.int64)].reshape(leading + shape)
+
+    @property
+    def attributes(self) -> list[Attribute]:
+        """What the surface carries, on the quads: what has one value at each vertex on vertices, else on corners or quads."""
+        if isinstance(self._made, bytes):
+            raise InputError("what was pickled has no attributes; ask for them before")
+        return _attributes.told(self._made.attributes())
 
     def picture(self, **options: Any) -> bytes:
         """A picture with its irregular vertices, as a PNG file. Options are those of the command line's pictures."""

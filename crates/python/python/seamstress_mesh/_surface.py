@@ -6,8 +6,9 @@ import json
 import os
 from typing import TYPE_CHECKING, Any
 
-from . import _native
+from . import _attributes, _native
 from ._arrays import Floats, Ints, float_rows, floats, int_rows, map_bytes, mesh_arrays, polygons
+from ._attributes import Attribute
 from ._errors import InputError
 from ._options import (
     Features,
@@ -27,6 +28,8 @@ from ._progress import running
 from ._results import CrossField, FeatureCurves, IntegerGridMap, Measurements, QuadMesh, SeamlessMap, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import numpy.typing as npt
     from typing_extensions import Unpack
 
@@ -77,6 +80,23 @@ class Surface:
         self.vertex_origin = int_rows(native.input_vertices())
         self.face_origin = int_rows(native.input_faces())
         self.report = json.loads(native.report())
+
+    @property
+    def attributes(self) -> list[Attribute]:
+        """What it carries beside its shape: UVs, colours, normals, materials, groups and other values, for the vertices,
+        corners and polygons that it was made of.
+        """
+        return _attributes.told(self._native.attributes())
+
+    def with_attributes(self, attributes: Iterable[Attribute]) -> Surface:
+        """The same surface with these attributes and no others, for the vertices, corners and polygons that it was made of.
+        They come over to quads and into files, and ``sizes`` may name them.
+
+        Raises ``InputError`` if one has another number of rows.
+        """
+        changed = Surface.__new__(Surface)
+        changed._of(self._native.with_attributes(_attributes.given(attributes)))
+        return changed
 
     @documented("map", *_MAP)
     def parametrize(self, **options: Unpack[MapOptions]) -> SeamlessMap:
@@ -139,7 +159,7 @@ class Surface:
             made = self._native.integer_map_of(self._given(uv, face_uv), both, run)
         return IntegerGridMap._of(self, made)
 
-    @documented("quad", "quads", "edge_length", "scale", "raw", "smooth", "partial", "small_parts", *_MAP)
+    @documented("quad", "quads", "edge_length", "scale", "raw", "smooth", "source_points", "partial", "small_parts", *_MAP)
     def quad_mesh(
         self,
         quads: float | None = None,
@@ -148,6 +168,7 @@ class Surface:
         scale: float | None = None,
         raw: bool = False,
         smooth: int = 0,
+        source_points: bool = False,
         partial: bool = False,
         small_parts: str | None = None,
         **options: Unpack[MapOptions],
@@ -157,7 +178,7 @@ class Surface:
         One of ``quads``, ``edge_length`` and ``scale`` says how fine it is to be. Without ``features`` it follows those
         of ``auto``. Raises ``NoCertifiedMap`` where there is none.
         """
-        shape = {"raw": raw, "smooth": smooth}
+        shape = {"raw": raw, "smooth": smooth, "source_points": source_points}
         parts = chosen(partial=partial, small_parts=small_parts)
         size = grid_size(quads, edge_length, scale)
         settings = {"size": size, "shape": shape, "parts": parts, "map": map_options(options)}
@@ -165,7 +186,7 @@ class Surface:
             made = self._native.quad_mesh(to_json(settings), run)
         return QuadMesh._of(self, made)
 
-    @documented("extract", "raw", "smooth", "tolerance", "best_effort", "features")
+    @documented("extract", "raw", "smooth", "source_points", "tolerance", "best_effort", "features")
     def extract_quads(
         self,
         uv: npt.ArrayLike,
@@ -173,13 +194,14 @@ class Surface:
         *,
         raw: bool = False,
         smooth: int = 0,
+        source_points: bool = False,
         tolerance: float | None = None,
         best_effort: bool = False,
         features: Features = None,
         **run_options: Unpack[RunOptions],
     ) -> QuadMesh:
         """Extracts the quads of an integer-grid map of this surface, made by any program, in grid units."""
-        shape = {"raw": raw, "smooth": smooth}
+        shape = {"raw": raw, "smooth": smooth, "source_points": source_points}
         settings = chosen(shape=shape, tolerance=tolerance, best_effort=best_effort)
         both = to_json([feature_sources(features) or [], settings])
         with running(known(run_options, RunOptions)) as run:
