@@ -101,7 +101,7 @@ def pencil_strokes(object: bpy.types.Object) -> Iterator[np.ndarray]:
                 continue
             for stroke in layer.active_frame.strokes:
                 yield moved(values(stroke.points, "co", 3), object.matrix_world @ layer.matrix_layer)
-    elif object.type == "GREASEPENCIL":
+    elif object.type == "GREASEPENCIL" and bpy.app.version >= (4, 3):
         for layer in object.data.layers:
             frame = layer.current_frame()
             if layer.hide or frame is None or not len(frame.drawing.curve_offsets):

@@ -85,6 +85,7 @@ mod parts;
 #[cfg(feature = "render")]
 mod pictures;
 mod polygons;
+mod quad_report;
 mod quads;
 mod quality;
 mod refined;
@@ -136,10 +137,10 @@ pub use page::{Explained, PageFacts};
 pub use parts::{PartOptions, PartReport, SmallParts};
 #[cfg(feature = "render")]
 pub use pictures::{MapPictures, TextureOptions, UpAxis, ViewOptions, ViewSide};
-pub use quads::{
-    ExtractedMap, ExtractionOptions, IrregularReport, QuadMesh, QuadMeshReport, QuadReport,
-    QuadTopology, Untangled,
+pub use quad_report::{
+    ExtractedMap, IrregularReport, QuadMeshReport, QuadReport, QuadTopology, Untangled,
 };
+pub use quads::{ExtractionOptions, QuadMesh};
 pub use quality::{PolygonMesh, QuadMetric, QualityReport, SourceReport};
 pub use report::{
     ComponentFactsReport, ConeReport, Distortion, Measurement, Percentiles, SeamReport,

@@ -22,8 +22,8 @@ use std::sync::Arc;
 const BOUNDS: [f64; 2] = [0.01, 100.0];
 /// A map has sizes as for so many cells along the side of a square with the area of the surface.
 const TEXTURE_CELLS: f64 = 50.0;
-/// How near to an edge vertices are on it, in cells: rounding.
-const ON_EDGE: f64 = 1e-6;
+/// How near to an edge vertices are on it, in cells: far more than rounding, and far less than a cell.
+const ON_EDGE: f64 = 1e-4;
 
 /// Sizes of cells asked for, and made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

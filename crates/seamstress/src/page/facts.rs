@@ -5,7 +5,7 @@ use crate::finding::{Elements, Finding, Severity};
 use crate::integer::{GridReport, IntegerMapReport};
 use crate::map::MapReport;
 use crate::parts::PartReport;
-use crate::quads::QuadMeshReport;
+use crate::quad_report::QuadMeshReport;
 use crate::report::{ConeReport, Distortion, SurfaceReport};
 use crate::words::{counted, rounded};
 use seamstress_parametrize::Alignment;
