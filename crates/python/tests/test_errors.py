@@ -66,7 +66,7 @@ def test_faults_of_a_mesh_are_listed() -> None:
         (lambda s: s.extract_quads(s.vertices[:, :2] * 0.4), "no-quads"),
         (lambda s: sm.Surface(*sphere()).optimize(), "options"),
         (lambda s: s.parametrize().write("there/is/none/map.obj"), "unwritable"),
-        (lambda s: s.parametrize().write("map.ply"), "unwritable"),
+        (lambda s: s.parametrize().write("map.off"), "unwritable"),
     ],
 )
 def test_input_errors(call: Callable[[sm.Surface], object], code: str) -> None:

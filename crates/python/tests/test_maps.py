@@ -239,7 +239,7 @@ def test_a_map_is_the_first_set_of_uvs_or_the_second(tmp_path: Path) -> None:
     found = {}
     for which in ("first", "second"):
         path = tmp_path / f"{which}.glb"
-        m.write(path, uv_set=which)  # type: ignore[arg-type]
+        m.write(path, uv_set=which)
         sets = [attribute for attribute in sm.read(path).attributes if attribute.kind == "uv"]
         found[which] = [bool(uv.values.min() > 5.0) for uv in sets]
     assert found == {"first": [False, True], "second": [True, False]}
