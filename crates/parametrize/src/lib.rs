@@ -17,6 +17,7 @@
     )
 )]
 
+mod chebyshev;
 pub mod consistency;
 mod cotangent;
 pub mod field;

@@ -41,7 +41,7 @@ fn most_layouts_are_rigid() {
 
 #[test]
 fn flipped_triangles_are_untangled() {
-    for seed in [1, 2] {
+    for seed in [2, 3] {
         let stretched = kit::stretch(&kit::random_surface(seed), [1.0, 1.0, 30.0]);
         assert_eq!(held(&stretched), (Route::Untangled, 0.0), "surface {seed}");
     }

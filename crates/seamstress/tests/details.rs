@@ -45,11 +45,28 @@ fn features_that_are_too_close_together_are_given_up_and_named() {
     assert_eq!(kept + dropped.len() as u64, report["features"]["edges"].as_u64().unwrap());
 }
 
+/// A block of some height, one of whose upright edges has a chamfer.
+fn chamfered(chamfer: f64, height: f64) -> Surface {
+    let far = 1.0 - chamfer;
+    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, far], [far, 1.0], [0.0, 1.0]];
+    let solid = extruded(&outline, height);
+    Surface::from_triangles(&solid.positions, &solid.faces).unwrap()
+}
+
+#[test]
+fn corners_that_might_be_either_agree_across_a_solid() {
+    // Above and below, one of the two corners of 135 degrees is a corner of the grid, and it has to be the same one.
+    for (chamfer, height) in [(0.02, 0.6), (0.02, 1.0), (0.025, 0.6), (0.05, 0.6)] {
+        let options = QuadOptions::count(150).features(Features::angle(30.0));
+        let made = chamfered(chamfer, height).quad_mesh(&options).unwrap();
+        let report = serde_json::to_value(made.report()).unwrap();
+        assert_eq!(report["features"]["kept"], 15, "chamfer {chamfer}, height {height}");
+    }
+}
+
 #[test]
 fn of_a_tiny_chamfer_one_side_is_enough() {
-    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.99], [0.99, 1.0], [0.0, 1.0]];
-    let solid = extruded(&outline, 1.0);
-    let surface = Surface::from_triangles(&solid.positions, &solid.faces).unwrap();
+    let surface = chamfered(0.01, 1.0);
     let options = QuadOptions::count(150).features(Features::angle(30.0));
     let made = surface.quad_mesh(&options).unwrap();
     let report = serde_json::to_value(made.report()).unwrap();

@@ -376,9 +376,10 @@ fn maps_refuse_what_checks_refuse() {
 
 #[test]
 fn meshes_of_the_collection_have_their_features_aligned() {
-    // Most features dropped, and the largest tau: that of the scarf is what the bound on the energy leaves.
+    // Most features dropped, and the largest tau: that of the scarf, of 68 triangles, lies between 2.4 and 5.1 when its
+    // vertices are moved by a millionth.
     for (name, released, tau) in
-        [("flap", 0, 1.40), ("chipped_torus", 0, 1.38), ("halved_scarf", 19, 3.12)]
+        [("flap", 0, 1.40), ("chipped_torus", 0, 1.38), ("halved_scarf", 19, 5.2)]
     {
         let Some(mesh) = testkit::in_collection(&format!("{name}.obj")) else { continue };
         let mesh = mesh.to_str().unwrap();

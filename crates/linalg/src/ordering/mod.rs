@@ -1,9 +1,11 @@
 //! Fill-reducing orderings.
 
+mod dissection;
 #[cfg(feature = "metis")]
 mod metis;
 mod minimum_degree;
 
+pub use dissection::Dissection;
 pub use minimum_degree::minimum_degree;
 
 use crate::buckets::Buckets;

@@ -5,6 +5,8 @@ mod dual_tree;
 mod gauge;
 pub(crate) mod isometric;
 mod matched;
+mod partial;
+mod prune;
 mod steiner;
 mod unfolding;
 
@@ -13,6 +15,7 @@ pub use dual_tree::{DualTree, curvature_weight, flatter_end};
 pub use gauge::{regauge, turned_vertices};
 pub use isometric::{frames_of_angles, rotations, unfold};
 pub use matched::{FramedCut, MatchedCut};
+pub use partial::PartialCut;
 pub(crate) use steiner::DisjointSets;
 pub use steiner::connect_cones;
 pub use unfolding::Unfolding;

@@ -1,8 +1,8 @@
 //! Few seams through all cones: a Steiner tree, then a dual tree that respects it.
 
-use super::{Cut, DualTree};
+use super::{Cut, DualTree, prune::prune};
 use crate::ordered::Ordered;
-use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
+use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -20,7 +20,7 @@ pub fn connect_cones(
     let tree = DualTree::breadth_first(mesh, &forbidden)?;
     let mut is_seam: HalfedgeData<bool> =
         mesh.halfedges().map(|h| mesh.twin(h).is_some() && !tree.crossed[h]).collect();
-    prune(mesh, is_cone, &mut is_seam);
+    prune(mesh, &mut is_seam, |v, _| !is_cone[v] && !mesh.is_boundary(v));
     Some((Cut::new(mesh, |h| !is_seam[h]), tree))
 }
 
@@ -91,30 +91,6 @@ fn mark(mesh: &TriMesh, marked: &mut HalfedgeData<bool>, h: Halfedge) {
     marked[h] = true;
     if let Some(t) = mesh.twin(h) {
         marked[t] = true;
-    }
-}
-
-/// Removes seams that end at a vertex which is neither a cone nor on the boundary.
-fn prune(mesh: &TriMesh, is_cone: &VertexData<bool>, is_seam: &mut HalfedgeData<bool>) {
-    let keeps = |v: Vertex| is_cone[v] || mesh.is_boundary(v);
-    let mut degree = VertexData::filled(mesh.n_vertices(), 0u32);
-    for h in mesh.halfedges().filter(|&h| is_seam[h]) {
-        degree[mesh.origin(h)] += 1;
-    }
-    let mut ends: Vec<Vertex> = mesh.vertices().filter(|&v| degree[v] == 1 && !keeps(v)).collect();
-    while let Some(v) = ends.pop() {
-        let last = mesh.outgoing(v).find(|&h| is_seam[h]);
-        let Some((h, t)) = last.and_then(|h| Some((h, mesh.twin(h)?))) else {
-            continue;
-        };
-        is_seam[h] = false;
-        is_seam[t] = false;
-        let w = mesh.tip(h);
-        degree[v] = 0;
-        degree[w] -= 1;
-        if degree[w] == 1 && !keeps(w) {
-            ends.push(w);
-        }
     }
 }
 

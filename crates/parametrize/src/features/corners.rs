@@ -30,14 +30,48 @@ pub(super) struct Curves<'a> {
     pub(super) goes_on: &'a VertexData<bool>,
 }
 
+/// Turns this close to the middle of two whole numbers of quarters might as well be either.
+const TIE: f64 = 0.1;
+
+/// By how many quarters a corner should turn; 0 where there is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct CornerTurn {
+    /// What is nearest.
+    pub(super) nearest: i32,
+    /// The least and the most of what is as near but for a tie.
+    pub(super) range: [i32; 2],
+}
+
+impl CornerTurn {
+    /// One number of quarters.
+    pub(super) fn exactly(quarters: i32) -> Self {
+        Self { nearest: quarters, range: [quarters; 2] }
+    }
+
+    /// What of it lies within bounds.
+    pub(super) fn clamp(self, low: i32, high: i32) -> Self {
+        let clamp = |quarters: i32| quarters.clamp(low, high);
+        Self { nearest: clamp(self.nearest), range: self.range.map(clamp) }
+    }
+}
+
 impl Curves<'_> {
-    /// By how many quarters the corner at a boundary vertex should turn; 0 where there is none.
-    pub(super) fn quarters(&self, v: Vertex, rule: CornerRule) -> i32 {
+    /// By how many quarters the corner at a boundary vertex should turn.
+    pub(super) fn quarters(&self, v: Vertex, rule: CornerRule) -> CornerTurn {
         let turn = self.turn[v] / FRAC_PI_2;
-        let is_corner = turn.abs() >= rule.least
-            && (!self.goes_on[v] || self.lasting_turn(v, rule.reach).abs() >= rule.least);
-        let quarters = turn.abs().round().max(1.0).copysign(turn);
-        if is_corner { quarters as i32 } else { 0 }
+        let goes_on = self.goes_on[v];
+        let lasting = if goes_on { self.lasting_turn(v, rule.reach) } else { turn };
+        let strength = turn.abs().min(lasting.abs());
+        let quarters = |tie: f64| {
+            let whole = (turn.abs() + tie).round().max(1.0);
+            if strength + tie >= rule.least { whole as i32 } else { 0 }
+        };
+        let [low, nearest, high] = [-TIE, 0.0, TIE].map(quarters);
+        if turn < 0.0 {
+            CornerTurn { nearest: -nearest, range: [-high, -low] }
+        } else {
+            CornerTurn { nearest, range: [low, high] }
+        }
     }
 
     /// The turn from the mean direction of the curve before a vertex to that after it, quarters.
@@ -146,5 +180,16 @@ mod tests {
         // Sectors of two triangles turn by a quarter at least, to make room for the others.
         let all: Vec<(u32, i32)> = (1..=n).map(|v| (v, 1)).collect();
         assert_eq!(corners(&mesh, &positions, 0.4, 0.0), all);
+        let sectors = |least| {
+            let metric = Metric::from_positions(&mesh, &positions);
+            let rim = EdgeSet::new(&mesh, mesh.halfedges().filter(|&h| mesh.twin(h).is_none()));
+            let (mesh, rule) = (&mesh, CornerRule { least, reach: 0.0 });
+            let sectors = Sectors::with_corners(mesh, &metric, &rim, rule);
+            sectors.slit().vertices().map(|s| sectors.preferences(s)).collect::<Vec<_>>()
+        };
+        // Where half a quarter is about the least turn of a corner, either will do.
+        assert_eq!(sectors(0.5)[1..], [[0, 1]; 8]);
+        assert_eq!(sectors(0.7)[1..], [[0, 0]; 8]);
+        assert_eq!(sectors(0.3)[1..], [[1, 1]; 8]);
     }
 }

@@ -1,10 +1,12 @@
 //! Sectors: the fans of corners between aligned edges, on which indices live.
 
 use super::bounds::index_bounds;
-use super::corners::{CornerRule, Curves};
+use super::corners::{CornerRule, CornerTurn, Curves};
+use seamstress_linalg::ordering::{Dissection, Graph};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// What the layout asks of the angle of a sector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,8 +36,10 @@ pub struct Sectors<'m> {
     vertex: VertexData<Vertex>,
     aligned: HalfedgeData<bool>,
     kind: VertexData<Kind>,
-    preferred: VertexData<i32>,
+    /// The index that costs nothing.
+    wanted: VertexData<CornerTurn>,
     largest_index: i32,
+    dissection: OnceLock<Dissection>,
 }
 
 /// An edge along which a unit of index can leave a sector.
@@ -60,8 +64,9 @@ impl<'m> Sectors<'m> {
             vertex: mesh.vertices().collect(),
             aligned: HalfedgeData::filled(mesh.n_halfedges(), false),
             kind: mesh.vertices().map(kind).collect(),
-            preferred: VertexData::filled(mesh.n_vertices(), 0),
+            wanted: VertexData::filled(mesh.n_vertices(), CornerTurn::exactly(0)),
             largest_index: LARGEST_INDEX,
+            dissection: OnceLock::new(),
         }
     }
 
@@ -105,17 +110,18 @@ impl<'m> Sectors<'m> {
         let goes_on = slit.vertices().map(|s| kind[s] == Kind::Corner && degree[vertex[s]] == 2);
         let goes_on: VertexData<bool> = goes_on.collect();
         let curves = Curves { slit: &slit, metric, turn: &turn, goes_on: &goes_on };
-        let preferred = slit.vertices().map(|s| {
+        let wanted = slit.vertices().map(|s| {
             let (low, high) = bounds(&slit, s);
             match kind[s] {
-                Kind::Interior | Kind::Free => 0,
-                Kind::OpenEnd => (-2).clamp(low, high),
+                Kind::Interior | Kind::Free => CornerTurn::exactly(0),
+                Kind::OpenEnd => CornerTurn::exactly(-2).clamp(low, high),
                 Kind::Corner => curves.quarters(s, rule).clamp(low, high),
             }
         });
-        let preferred = preferred.collect();
+        let wanted = wanted.collect();
         let slit = Cow::Owned(slit);
-        Self { mesh, slit, vertex, aligned, kind, preferred, largest_index: LARGEST_INDEX }
+        let (largest_index, dissection) = (LARGEST_INDEX, OnceLock::new());
+        Self { mesh, slit, vertex, aligned, kind, wanted, largest_index, dissection }
     }
 
     /// The mesh.
@@ -129,6 +135,13 @@ impl<'m> Sectors<'m> {
     #[must_use]
     pub fn slit(&self) -> &TriMesh {
         &self.slit
+    }
+
+    /// An order of the vertices of the mesh in which factors of its systems stay sparse.
+    pub(crate) fn dissection(&self) -> &Dissection {
+        let edges = || self.mesh.edges().map(|h| (self.mesh.origin(h).0, self.mesh.tip(h).0));
+        let graph = || Graph::from_edges(self.mesh.n_vertices(), edges());
+        self.dissection.get_or_init(|| Dissection::new(&graph()))
     }
 
     /// The vertex of the mesh a sector is a part of.
@@ -180,7 +193,15 @@ impl<'m> Sectors<'m> {
     #[inline]
     #[must_use]
     pub fn preferred(&self, sector: Vertex) -> i32 {
-        self.preferred[sector]
+        self.wanted[sector].nearest
+    }
+
+    /// The least and the largest index that cost nothing: more than one where the angle of a corner is about as near to
+    /// either.
+    #[inline]
+    #[must_use]
+    pub fn preferences(&self, sector: Vertex) -> [i32; 2] {
+        self.wanted[sector].range
     }
 
     /// How far each sector is from flat, radians: an ordinary vertex from a full turn, one at a feature from

@@ -1,6 +1,7 @@
 //! As-rigid-as-possible layout by local and global steps, and the Poisson layout for given frames.
 
 use super::problem::LayoutProblem;
+use crate::chebyshev::accelerated;
 use crate::energy::Triangle;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::direction;
@@ -84,26 +85,33 @@ impl<'p> Poisson<'p> {
         y
     }
 
-    /// Local/global iterations (Liu et al. 2008) from frames; returns the unknowns.
+    /// Local/global iterations (Liu et al. 2008) from frames, accelerated; returns the unknowns.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub fn arap(
         &mut self,
-        mut frames_now: Vec<Complex64>,
+        mut now: Vec<Complex64>,
         iterations: usize,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Vec<f64>, Cancelled> {
-        let mut y = vec![0.0; self.problem.space().n_unknowns()];
-        for k in 0..iterations {
+        let mut y = self.solve_frames(&now);
+        let mut before = now.clone();
+        for step in accelerated().take(iterations) {
             watch.pulse()?;
-            if k > 0 {
-                let z = self.problem.space().expand(&y);
-                frames_now = frames(self.problem.triangles(), &z);
+            let z = self.problem.space().expand(&y);
+            let turned = now.iter_mut().zip(&mut before).zip(frames(self.problem.triangles(), &z));
+            for ((now, before), best) in turned {
+                let last = std::mem::replace(before, *now);
+                *now = direction(step.from(*now, last, best));
             }
-            let targets: Vec<_> = frames_now.iter().map(|&r| [r, r * Complex64::I]).collect();
-            y = self.solve(&targets);
+            y = self.solve_frames(&now);
         }
         Ok(y)
+    }
+
+    fn solve_frames(&mut self, frames: &[Complex64]) -> Vec<f64> {
+        let targets: Vec<_> = frames.iter().map(|&r| [r, r * Complex64::I]).collect();
+        self.solve(&targets)
     }
 }

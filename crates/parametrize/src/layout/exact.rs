@@ -4,7 +4,7 @@ use super::alignment::{Level, leveled};
 use super::arap::{Poisson, frames};
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
-use super::space::seamless_space;
+use super::space::{LinearSpace, seamless_space};
 use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
 use crate::energy::{Energy, Triangle, is_positive, triangles};
 use crate::features::Sectors;
@@ -191,7 +191,9 @@ impl ExactLayout {
                 .collect();
             space = leveled(&space, &levels);
         }
-        let problem = LayoutProblem::new(space, triangles(mesh, metric, &cut), None)?;
+        let order = induced_order(sectors, &cut, &space);
+        let problem =
+            LayoutProblem::ordered(space, triangles(mesh, metric, &cut), None, Some(&order))?;
         Ok(Self { cut, matching, gauge, index, problem })
     }
 
@@ -338,6 +340,19 @@ impl ExactLayout {
         wrong_angles.dedup();
         Defects { flips: slit.faces().filter(flipped).collect(), wrong_angles }
     }
+}
+
+/// The order of the unknowns of a space that follows from that of the vertices: a node lies at every vertex at one of whose
+/// wedges its unknowns count.
+fn induced_order(sectors: &Sectors<'_>, cut: &Cut, space: &LinearSpace) -> Vec<u32> {
+    let (mesh, nodes) = (sectors.mesh(), space.nodes());
+    let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
+    let lies = mesh.halfedges().flat_map(|h| {
+        let row = 2 * cut.wedge[h] as usize;
+        let columns = [row, row + 1].into_iter().flat_map(|row| space.row(row).0);
+        columns.map(move |&unknown| (nodes[unknown as usize], mesh.origin(h).0))
+    });
+    sectors.dissection().induced(n_nodes, lies)
 }
 
 /// Sum of the layout's corner angles around each vertex of a mesh or sector of a slit one, radians; a flipped corner counts negative.

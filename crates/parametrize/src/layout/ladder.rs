@@ -33,7 +33,7 @@ pub enum LayoutEffort {
 }
 
 /// Local/global iterations of the rigid layout; later ones hardly change it.
-const RIGID_ITERATIONS: usize = 20;
+const RIGID_ITERATIONS: usize = 8;
 
 /// Lays out matched seams exactly: the isometric layout if there is no seam; else the rigid one from the frames given,
 /// untangled if triangles are flipped; else that of the barrier homotopy. The first without flips and wrong angles

@@ -34,13 +34,19 @@ pub struct Polished {
 }
 
 /// Weight of the energy at first, against tau squared.
-const FIRST_WEIGHT: f64 = 3.0;
+const FIRST_WEIGHT: f64 = 1.0;
 /// Iterations before the weight changes: those in which the run leaves its start.
-const PATIENCE: usize = 2;
-/// The weight is multiplied by the rise as a part of the one allowed, but by no more than these factors at a time.
+const PATIENCE: usize = 4;
+/// The weight is multiplied by the rise to come as a part of the one allowed, squared where it is above: it has less time to
+/// come back; but by no more than these factors at a time.
 const CHANGE: (f64, f64) = (0.4, 2.5);
 /// A rise counts as this part of the one allowed at least.
 const SMALLEST_RISE: f64 = 0.05;
+/// The rise goes on as it went from the last layout, for two more; by no more than this factor for each.
+const LARGEST_TREND: f64 = 2.0;
+/// The part by which tau has to fall to be worth an iteration, and how many may go without.
+const WORTHWHILE: f64 = 2e-3;
+const IDLE: usize = 4;
 /// Halvings of the line search that spends the rest: to a thousandth of the line.
 const HALVINGS: usize = 10;
 
@@ -104,6 +110,10 @@ struct Search {
     weight: f64,
     /// Layouts seen.
     count: usize,
+    /// The rise of the last, as a part of the one allowed.
+    last_rise: f64,
+    /// The last layouts, all of them within the bound, that gained nothing.
+    idle: usize,
     /// Those of smallest tau within the bound and beyond.
     within: Candidate,
     beyond: Option<Candidate>,
@@ -116,23 +126,33 @@ impl Search {
             allowed: max_energy_rise * start.energy,
             weight: FIRST_WEIGHT,
             count: 0,
+            last_rise: SMALLEST_RISE,
+            idle: 0,
             within: start,
             beyond: None,
         }
     }
 
-    /// Judges a layout; returns its best scale, and the weight of the energy from there on.
-    fn weigh(&mut self, problem: &LayoutProblem, y: &[f64], z: &[Complex64]) -> (f64, f64) {
+    /// Judges a layout; returns its best scale, and the weight of the energy from there on, unless layouts within the bound
+    /// have gained nothing for a while.
+    fn weigh(&mut self, problem: &LayoutProblem, y: &[f64], z: &[Complex64]) -> Option<(f64, f64)> {
         let found = Candidate::new(problem, y, z);
         let scale = found.scale;
-        let rise = (found.energy - self.least) / self.allowed;
+        let rise = ((found.energy - self.least) / self.allowed).max(SMALLEST_RISE);
         if self.count >= PATIENCE {
-            let factor = rise.max(SMALLEST_RISE);
-            self.weight *= factor.clamp(CHANGE.0, CHANGE.1);
+            // What the rise will be when the weight is felt.
+            let trend = (rise / self.last_rise).clamp(1.0 / LARGEST_TREND, LARGEST_TREND);
+            let coming = (rise * trend * trend).max(SMALLEST_RISE);
+            let change = if coming > 1.0 { coming * coming } else { coming };
+            self.weight *= change.clamp(CHANGE.0, CHANGE.1);
         }
         self.count += 1;
-        self.take(found);
-        (scale, self.weight)
+        self.last_rise = rise;
+        let tau = self.within.tau;
+        let is_within = self.take(found);
+        let gains = self.within.tau < (1.0 - WORTHWHILE) * tau;
+        self.idle = if is_within && !gains { self.idle + 1 } else { 0 };
+        (self.idle < IDLE).then_some((scale, self.weight))
     }
 
     /// Keeps a layout if it is the best of its kind; returns whether it is within the bound.

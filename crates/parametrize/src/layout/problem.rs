@@ -68,13 +68,29 @@ impl LayoutProblem {
         triangles: Vec<Triangle>,
         penalty: Option<SeamPenalty>,
     ) -> Result<Self, NotPositiveDefinite> {
+        Self::ordered(space, triangles, penalty, None)
+    }
+
+    /// The same with a given order of the nodes of the space.
+    ///
+    /// # Errors
+    /// As [`LayoutProblem::new`].
+    pub fn ordered(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        penalty: Option<SeamPenalty>,
+        order: Option<&[u32]>,
+    ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
             triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
         for wedges in penalty.iter().flat_map(SeamPenalty::elements) {
             elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
         let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
-        let order = order_by_nodes(space.nodes(), &elements);
+        let order = match order {
+            Some(order) => by_node(space.nodes(), order),
+            None => order_by_nodes(space.nodes(), &elements),
+        };
         let cholesky = Cholesky::analyze(assembly.pattern(), &order)?;
         Ok(Self {
             blocks: vec![0.0; assembly.blocks_len()],
@@ -445,7 +461,11 @@ fn order_by_nodes(nodes: &[u32], elements: &[Vec<u32>]) -> Vec<u32> {
         (0..unknowns.len()).flat_map(move |i| (0..i).map(move |j| (node(i), node(j))))
     });
     let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
-    let unknowns = Buckets::new(n_nodes, nodes);
-    let order = fill_reducing_order(&Graph::from_edges(n_nodes, edges));
+    by_node(nodes, &fill_reducing_order(&Graph::from_edges(n_nodes, edges)))
+}
+
+/// The order of unknowns that follows from an order of their nodes.
+fn by_node(nodes: &[u32], order: &[u32]) -> Vec<u32> {
+    let unknowns = Buckets::new(order.len(), nodes);
     order.iter().flat_map(|&node| unknowns.of(node as usize).iter().copied()).collect()
 }

@@ -97,7 +97,7 @@ fn lay_out_field(
     log.enter(Stage::Layout, watch)?;
     let mut layout = ExactLayout::new(&sectors, &metric, &start.matched)?;
     // The first global step is the Poisson layout.
-    let mut y = layout.arap(&start.frames, 1 + options.iterations, watch)?;
+    let mut y = layout.arap(&start.frames, options.iterations, watch)?;
     layout.rescale(&mut y);
     log.count(1 + options.iterations);
 

@@ -5,7 +5,6 @@ use crate::features::Sectors;
 use crate::field::{Guide, frames_of};
 use crate::quarter::nearest_quarter;
 use num_complex::Complex64;
-use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Halfedge, Metric, Vertex};
 use seamstress_parallel::prelude::*;
@@ -202,8 +201,14 @@ impl Projector {
             })
             .collect();
         let pattern = dual_pattern(nodes, sides.iter().copied());
-        let pairs = sides.iter().map(|&[f, g]| (f, g));
-        let order = fill_reducing_order(&Graph::from_edges(nodes, pairs));
+        // Two faces are coupled across an edge: a face is where its two corners are that go first.
+        let dissection = sectors.dissection();
+        let corners = slit.faces().flat_map(|f| {
+            let mut corners = slit.face_vertices(f).map(|s| sectors.vertex(s).0);
+            corners.sort_unstable_by_key(|&v| dissection.place(v));
+            [(f.0, corners[0]), (f.0, corners[1])]
+        });
+        let order = dissection.induced(nodes, corners);
         let mut matrix = vec![0.0; pattern.len()];
         for &k in pattern.diagonal() {
             matrix[k as usize] = SHIFT;

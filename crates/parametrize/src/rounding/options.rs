@@ -44,7 +44,7 @@ impl Default for RoundingOptions {
             cone_bias: 0.5,
             corner_weight: 1.0,
             rounds: 60,
-            layout_iterations: 8,
+            layout_iterations: 4,
             mixed_integer: MixedIntegerOptions::default(),
         }
     }

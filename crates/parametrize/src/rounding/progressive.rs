@@ -2,10 +2,10 @@
 
 use super::options::{RoundingOptions, RoundingStrategy};
 use super::patch::LocalEstimate;
-use super::relaxation::Relaxation;
+use super::relaxation::{Faces, Relaxation};
 use super::weights::SectorWeights;
 use super::{Rounding, RoundingStats};
-use crate::cut::{FramedCut, MatchedCut, Unfolding};
+use crate::cut::{FramedCut, MatchedCut, Unfolding, frames_of_angles};
 use crate::features::Sectors;
 use crate::field::Guide;
 use crate::progress::{SolveError, Watch};
@@ -17,10 +17,17 @@ const FIRST_THRESHOLD: f64 = 0.05;
 const LAST_THRESHOLD: f64 = 1.0;
 /// Costs closer than this are the same.
 const SAME_COST: f64 = 1e-9;
-/// A new layout is worth its time once this share of the seams was rounded.
-const LAYOUT_SHARE: f64 = 0.005;
+/// A new layout is worth its time once this part of the edges that were open at the last one was rounded, and this part of
+/// all.
+const OPEN_SHARE: f64 = 0.3;
+const LEAST_SHARE: f64 = 0.0025;
 /// Layout iterations before the first round towards a guide, which is far away.
-const GUIDED_ITERATIONS: usize = 20;
+const GUIDED_ITERATIONS: usize = 8;
+/// Edges nearer than this to the middle of two quarters are undecided.
+const UNDECIDED_TURN: f64 = 0.4;
+/// The part of the undecided edges at corners that might be either that is rounded at once: how these are decided
+/// tells the next layout about the others.
+const UNDECIDED_SHARE: f64 = 1.0 / 16.0;
 /// Roundings that turn an edge by more than this (quarters) keep apart within a round.
 const LARGE_TURN: f64 = 0.1;
 
@@ -41,18 +48,30 @@ pub(super) fn round_progressively(
     watch: &mut Watch<'_, '_>,
 ) -> Result<Rounding, SolveError> {
     let slit = sectors.slit();
-    let mut relaxation = Relaxation::new(sectors, metric, &unfolding)?;
     let weights = SectorWeights::new(sectors, options);
+    let undecided = |edge: u32, rotation: f64| {
+        let h = unfolding.turning[edge as usize];
+        let at = |s| sectors.preferences(s)[0] < sectors.preferences(s)[1];
+        (rotation - rotation.round()).abs() > UNDECIDED_TURN
+            && (at(slit.origin(h)) || at(slit.tip(h)))
+    };
     let mut rotation = unfolding.isometric.clone();
+    let mut known: Vec<Option<i32>> = vec![None; rotation.len()];
+    let mut faces = Faces {
+        frames: frames_of_angles(slit, metric, &metric.angle, &unfolding.tree),
+        wanted: Vec::new(),
+    };
     if let Some(guide) = guide {
-        let turned = relaxation.follow(guide, metric, &unfolding.tree, GUIDED_ITERATIONS)?;
+        let mut relaxation = Relaxation::new(sectors, metric, &unfolding, &known, faces)?;
+        let turned = relaxation.follow(guide, metric, &unfolding.tree, GUIDED_ITERATIONS);
         for (edge, (r, &h)) in rotation.iter_mut().zip(&unfolding.turning).enumerate() {
             let right = slit.twin(h).map_or(0.0, |t| turned[t.face()]);
             *r -= (right - turned[h.face()]) / FRAC_PI_2;
             *r = relaxation.rotation(edge, *r);
         }
+        faces = relaxation.into_faces();
     }
-    let mut matching = vec![0; rotation.len()];
+    let mut relaxation: Option<Relaxation> = None;
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;
     let mut stats = RoundingStats::default();
@@ -76,25 +95,38 @@ pub(super) fn round_progressively(
             let (o, d) = (slit.origin(h), slit.tip(h));
             size + (weights.change(o, index[o], -turn) + weights.change(d, index[d], turn))
         };
-        let chosen = choose(slit, &unfolding.turning, &rotation, &open, threshold, cost);
+        let chosen = choose(slit, &unfolding.turning, &rotation, &open, threshold, cost, undecided);
         stats.rounds += 1;
         if chosen.is_empty() {
             continue;
         }
+        let decides = chosen.iter().any(|&(edge, _)| undecided(edge, rotation[edge as usize]));
         for &(edge, integer) in &chosen {
-            matching[edge as usize] = integer;
+            known[edge as usize] = Some(integer);
             rotation[edge as usize] = f64::from(integer);
-            relaxation.close(edge as usize, integer);
+            if let Some(relaxation) = &mut relaxation {
+                relaxation.close(edge as usize, integer);
+            }
         }
-        let mut is_chosen = vec![false; rotation.len()];
-        chosen.iter().for_each(|&(edge, _)| is_chosen[edge as usize] = true);
-        open.retain(|&edge| !is_chosen[edge as usize]);
+        open.retain(|&edge| known[edge as usize].is_none());
         since_layout += chosen.len();
-        if (since_layout as f64) < LAYOUT_SHARE * total && !open.is_empty() {
+        let worth = (LEAST_SHARE * total).max(OPEN_SHARE * (open.len() + since_layout) as f64);
+        let is_enough = decides || since_layout as f64 >= worth;
+        if !is_enough && !open.is_empty() {
             continue;
         }
         since_layout = 0;
-        relaxation.relax(options.layout_iterations)?;
+        let mut layout = match relaxation.take() {
+            Some(mut layout) => {
+                layout.lay_out()?;
+                layout
+            }
+            None => {
+                let faces = std::mem::take(&mut faces);
+                Relaxation::new(sectors, metric, &unfolding, &known, faces)?
+            }
+        };
+        layout.steps(options.layout_iterations);
         stats.layouts += 1;
         if options.strategy == RoundingStrategy::LocalEstimation {
             // Most edges are rounded at first sight; the patches of the others are worth solving.
@@ -102,19 +134,22 @@ pub(super) fn round_progressively(
                 Some((patches, _)) => patches,
                 None => LocalEstimate::new(sectors, metric, &unfolding.turning, &open),
             };
-            estimate = Some((patches, relaxation.log_scale(slit, metric)));
+            estimate = Some((patches, layout.log_scale(slit, metric)));
         }
         for &edge in &open {
             let r = &mut rotation[edge as usize];
-            *r = relaxation.rotation(edge as usize, *r);
+            *r = layout.rotation(edge as usize, *r);
         }
+        relaxation = Some(layout);
     }
+    let frames = relaxation.map_or(faces, Relaxation::into_faces).frames;
+    let matching = known.into_iter().flatten().collect();
     let matched = MatchedCut { unfolding, matching };
-    Ok(Rounding { start: FramedCut { matched, frames: relaxation.frames() }, stats })
+    Ok(Rounding { start: FramedCut { matched, frames }, stats })
 }
 
 /// The open edges to round now, with their integers: cost within the threshold, cheapest first, large
-/// turns at least a sector apart.
+/// turns at least a sector apart, and of the undecided edges a few.
 fn choose(
     mesh: &TriMesh,
     turning: &[Halfedge],
@@ -122,6 +157,7 @@ fn choose(
     open: &[u32],
     threshold: f64,
     cost: impl Fn(u32, f64) -> f64,
+    undecided: impl Fn(u32, f64) -> bool,
 ) -> Vec<(u32, i32)> {
     let mut candidates: Vec<SeamRounding> = open
         .iter()
@@ -140,6 +176,15 @@ fn choose(
         })
         .collect();
     candidates.sort_unstable_by_key(SeamRounding::key);
+    let undecided = |c: &SeamRounding| undecided(c.edge, rotation[c.edge as usize]);
+    let n_undecided = candidates.iter().filter(|c| undecided(c)).count() as f64;
+    let mut left = (UNDECIDED_SHARE * n_undecided).ceil() as usize;
+    candidates.retain(|candidate| {
+        let waits = undecided(candidate);
+        let is_due = !waits || left > 0;
+        left -= usize::from(waits && is_due);
+        is_due
+    });
     let mut used = VertexData::filled(mesh.n_vertices(), false);
     candidates.retain(|candidate| {
         if candidate.turn <= LARGE_TURN {

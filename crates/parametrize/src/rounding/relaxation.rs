@@ -1,10 +1,11 @@
 //! The layout between roundings: as rigid as possible, rounded edges held, the others free.
 
 use super::system::RelaxationSystem;
-use crate::cut::{Cut, DualTree, Unfolding};
+use crate::chebyshev::{Step, accelerated};
+use crate::cut::{Cut, DualTree, PartialCut, Unfolding};
 use crate::features::Sectors;
 use crate::field::Guide;
-use crate::quarter::{direction, nearest_quarter, unit};
+use crate::quarter::{direction, nearest_quarter, turn, unit};
 use num_complex::Complex64;
 use seamstress_linalg::{Buckets, NotPositiveDefinite};
 use seamstress_mesh::{FaceData, Halfedge, HalfedgeData, Metric, TriMesh, VertexData};
@@ -14,12 +15,11 @@ use std::f64::consts::FRAC_PI_2;
 /// Weight of the rows that hold a rounded edge; the rigidity energy has weights of order one.
 const SEAM_WEIGHT: f64 = 1e3;
 
-/// How far a local step goes beyond the best rotation: with this, four iterations do what eight do
-/// without.
-const OVERSHOOT: f64 = 0.8;
-
-/// State of the relaxation. The pattern of the system has room for every row from the start, so that one
-/// symbolic analysis serves all rounds; it is real only where edges are to be aligned.
+/// State of the relaxation, on the cut that the matchings known at its start leave. The pattern of the system has room
+/// for every row from the start, so that one symbolic analysis serves all rounds; it is real only where edges are to be
+/// aligned.
+///
+/// Whoever calls it speaks in the gauge of the unfolding.
 pub(super) struct Relaxation {
     z: Vec<Complex64>,
     /// Per corner: `sum of z conj(g)` over a face has the face's rotation; `sum of rotation g` over a
@@ -28,11 +28,13 @@ pub(super) struct Relaxation {
     wedge_of_corner: Vec<u32>,
     corners_of_wedge: Buckets,
     frames: Vec<Complex64>,
-    /// Per face the rotation wanted, up to quarter turns, by what it counts: as much as rigidity where directions count
-    /// fully. Empty without a guide.
+    /// The frames before the last step.
+    before: Vec<Complex64>,
     wanted: Vec<Complex64>,
-    /// Wedges of each seam: origin and tip on the left, origin and tip on the right.
-    seams: Vec<[u32; 4]>,
+    /// From the gauge of the unfolding to that of the cut, quarter turns.
+    gauge: FaceData<i32>,
+    /// The seams of the unfolding.
+    seams: Vec<Seam>,
     /// All aligned half-edges.
     aligned: Vec<AlignedEdge>,
     /// Those of them that turn; they follow on the seams.
@@ -40,18 +42,39 @@ pub(super) struct Relaxation {
     system: RelaxationSystem,
 }
 
+/// What a layout does with each face, in the gauge of the unfolding.
+#[derive(Default)]
+pub(super) struct Faces {
+    /// Its rotation, a unit complex number.
+    pub(super) frames: Vec<Complex64>,
+    /// The rotation wanted, up to quarter turns, by what it counts: as much as rigidity where directions count fully.
+    /// Empty without a guide.
+    pub(super) wanted: Vec<Complex64>,
+}
+
+/// A seam of the unfolding.
+struct Seam {
+    /// Wedges of origin and tip on the left, then on the right.
+    wedges: [u32; 4],
+    /// How much further the gauge turns the left face than the right one, quarter turns.
+    gauge: i32,
+}
+
 /// One side of an aligned edge.
 struct AlignedEdge {
     /// Wedges of its origin and tip.
     ends: [u32; 2],
+    /// Gauge of its face.
+    gauge: i32,
     /// The other side, by its place in the list.
     twin: Option<u32>,
-    /// Its direction in quarters, once it has one.
+    /// Its direction in quarters, in the gauge of the cut, once it has one.
     direction: Option<i32>,
 }
 
 impl Relaxation {
-    /// Starts from the isometric layout; the aligned edges that hang on the ground are held at once.
+    /// Lays the faces out as near to their frames as the known matchings let them, and their sides that hang on the
+    /// ground.
     ///
     /// # Errors
     /// When the system cannot be set up.
@@ -59,27 +82,46 @@ impl Relaxation {
         sectors: &Sectors<'_>,
         metric: &Metric,
         unfolding: &Unfolding,
+        matching: &[Option<i32>],
+        Faces { mut frames, wanted }: Faces,
     ) -> Result<Self, NotPositiveDefinite> {
-        let (slit, cut) = (sectors.slit(), &unfolding.cut);
+        let slit = sectors.slit();
+        let PartialCut { cut, gauge, known } = PartialCut::new(slit, unfolding, matching);
         let n = cut.n_wedges;
-        let seams: Vec<[u32; 4]> = cut.seams.iter().map(|&h| cut.seam_wedges(slit, h)).collect();
+        for (frame, &k) in frames.iter_mut().zip(gauge.iter()) {
+            *frame = turn(*frame, k);
+        }
+        let seam = |&h: &Halfedge| Seam {
+            wedges: cut.seam_wedges(slit, h),
+            gauge: gauge[h.face()] - slit.twin(h).map_or(0, |t| gauge[t.face()]),
+        };
         let faces: Vec<[u32; 3]> =
             slit.faces().map(|f| f.halfedges().map(|h| cut.wedge[h])).collect();
-        let (aligned, place) = aligned_edges(sectors, cut);
-        let links: Vec<[u32; 4]> = aligned.iter().filter_map(|e| link(&aligned, e)).collect();
-        let quads = seams.iter().chain(&links).map(<[u32; 4]>::as_slice);
+        let (aligned, place) = aligned_edges(sectors, &cut, &gauge);
+        let seams = cut.seams.iter().map(|&h| cut.seam_wedges(slit, h));
+        let links = aligned.iter().filter_map(|edge| link(&aligned, edge));
+        let quads: Vec<[u32; 4]> = seams.chain(links).collect();
+        let quads = quads.iter().map(<[u32; 4]>::as_slice);
         let cliques = faces.iter().map(<[u32; 3]>::as_slice).chain(quads);
+        let vertex = |h| sectors.mesh().origin(h).0;
+        let order =
+            sectors.dissection().induced(n, slit.halfedges().map(|h| (cut.wedge[h], vertex(h))));
         let mut relaxation = Self {
-            z: unfolding.positions(sectors, metric),
+            z: vec![Complex64::ZERO; n],
             corner_weights: corner_weights(slit, metric),
             wedge_of_corner: cut.wedge.to_vec(),
             corners_of_wedge: Buckets::new(n, &cut.wedge),
-            frames: vec![Complex64::ONE; faces.len()],
-            wanted: Vec::new(),
-            system: RelaxationSystem::new(n, cliques, sectors.any_aligned())?,
-            turning: unfolding.turning[seams.len()..].iter().map(|&h| place[h]).collect(),
-            seams,
+            before: frames.clone(),
+            frames,
+            wanted,
+            system: RelaxationSystem::new(&order, cliques, sectors.any_aligned())?,
+            seams: unfolding.cut.seams.iter().map(seam).collect(),
+            turning: unfolding.turning[unfolding.cut.seams.len()..]
+                .iter()
+                .map(|&h| place[h])
+                .collect(),
             aligned,
+            gauge,
         };
         let cotangent = metric.cotangent();
         for h in slit.halfedges() {
@@ -88,9 +130,18 @@ impl Relaxation {
             relaxation.system.add_row(&row, cotangent[h] / 2.0);
         }
         relaxation.system.shift();
+        for (h, matching) in known {
+            relaxation.hold(cut.seam_wedges(slit, h), matching);
+        }
         for h in unfolding.tree.ground.iter().flatten() {
             relaxation.align(place[*h], 0);
         }
+        for (place, matching) in matching[relaxation.seams.len()..].iter().enumerate() {
+            if let Some(matching) = matching {
+                relaxation.align(relaxation.turning[place], -matching);
+            }
+        }
+        relaxation.lay_out()?;
         Ok(relaxation)
     }
 
@@ -99,17 +150,14 @@ impl Relaxation {
     ///
     /// Of the four directions of a face the one is taken that turns it least against the face before it in the
     /// tree: chosen face by face they would make pairs of cones along the tree.
-    ///
-    /// # Errors
-    /// When the matrix is not positive definite to working precision.
     pub(super) fn follow(
         &mut self,
         guide: &Guide,
         metric: &Metric,
         tree: &DualTree,
         iterations: usize,
-    ) -> Result<FaceData<f64>, NotPositiveDefinite> {
-        self.local_step(0.0);
+    ) -> FaceData<f64> {
+        self.local_step(Step::PLAIN);
         let mut turned = FaceData::filled(self.frames.len(), 0.0);
         for &f in &tree.order {
             let off = (self.frames[f.at()] * guide.rotation[f].conj()).arg();
@@ -122,16 +170,15 @@ impl Relaxation {
         let faces = guide.weight.iter().zip(metric.area.iter());
         let pull = |(r, (weight, area)): (&Complex64, (&f64, &f64))| r * (2.0 * weight * area);
         self.wanted = guide.rotation.iter().zip(faces).map(pull).collect();
-        self.system.factorize()?;
         self.global_step();
         self.steps(iterations);
-        Ok(turned)
+        turned
     }
 
     /// Holds an edge at its rotation from now on.
     pub(super) fn close(&mut self, edge: usize, matching: i32) {
         match self.seams.get(edge) {
-            Some(&seam) => self.hold(seam, matching),
+            Some(&Seam { wedges, gauge }) => self.hold(wedges, matching - gauge),
             None => self.align(self.turning[edge - self.seams.len()], -matching),
         }
     }
@@ -145,6 +192,7 @@ impl Relaxation {
 
     /// Holds an aligned half-edge along an axis, and the edge together if its other side is held too.
     fn align(&mut self, place: u32, direction: i32) {
+        let direction = direction + self.aligned[place as usize].gauge;
         self.aligned[place as usize].direction = Some(direction);
         let edge = &self.aligned[place as usize];
         let constant = if direction.rem_euclid(2) == 0 { 1 } else { 0 };
@@ -156,19 +204,20 @@ impl Relaxation {
         }
     }
 
-    /// Local and global steps (Liu et al. 2008) with one factorisation.
+    /// Lays the faces out anew, with the edges held by now.
     ///
     /// # Errors
     /// When the matrix is not positive definite to working precision.
-    pub(super) fn relax(&mut self, iterations: usize) -> Result<(), NotPositiveDefinite> {
+    pub(super) fn lay_out(&mut self) -> Result<(), NotPositiveDefinite> {
         self.system.factorize()?;
-        self.steps(iterations);
+        self.global_step();
         Ok(())
     }
 
-    fn steps(&mut self, iterations: usize) {
-        for _ in 0..iterations {
-            self.local_step(OVERSHOOT);
+    /// Local and global steps (Liu et al. 2008), accelerated.
+    pub(super) fn steps(&mut self, iterations: usize) {
+        for step in accelerated().take(iterations) {
+            self.local_step(step);
             self.global_step();
         }
     }
@@ -178,17 +227,19 @@ impl Relaxation {
         self.system.solve(&mut self.z);
     }
 
-    fn local_step(&mut self, overshoot: f64) {
+    /// Turns every face towards its best rotation.
+    fn local_step(&mut self, step: Step) {
         let (z, wedges, weights) = (&self.z, &self.wedge_of_corner, &self.corner_weights);
         let wanted = &self.wanted;
-        self.frames.par_iter_mut().enumerate().with_min_len(4096).for_each(|(f, frame)| {
+        let faces = self.frames.par_iter_mut().zip(self.before.par_iter_mut());
+        faces.enumerate().with_min_len(4096).for_each(|(f, (frame, before))| {
             let term = |c: usize| z[wedges[c] as usize] * weights[c].conj();
             let mut similar = term(3 * f) + term(3 * f + 1) + term(3 * f + 2);
             if let Some(&wanted) = wanted.get(f) {
                 similar += nearest_quarter(wanted, similar);
             }
-            let best = direction(similar);
-            *frame = direction(best + overshoot * (best - *frame));
+            let last = std::mem::replace(before, *frame);
+            *frame = direction(step.from(*frame, last, direction(similar)));
         });
     }
 
@@ -205,13 +256,13 @@ impl Relaxation {
     pub(super) fn rotation(&self, edge: usize, last: f64) -> f64 {
         let r = match self.seams.get(edge) {
             Some(seam) => {
-                let [a, b, c, d] = seam.map(|w| self.z[w as usize]);
-                ((d - c) * (b - a).conj()).arg() / FRAC_PI_2
+                let [a, b, c, d] = seam.wedges.map(|w| self.z[w as usize]);
+                ((d - c) * (b - a).conj()).arg() / FRAC_PI_2 + f64::from(seam.gauge)
             }
             None => {
-                let place = self.turning[edge - self.seams.len()];
-                let [a, b] = self.aligned[place as usize].ends.map(|w| self.z[w as usize]);
-                -(b - a).arg() / FRAC_PI_2
+                let edge = &self.aligned[self.turning[edge - self.seams.len()] as usize];
+                let [a, b] = edge.ends.map(|w| self.z[w as usize]);
+                f64::from(edge.gauge) - (b - a).arg() / FRAC_PI_2
             }
         };
         last + (r - last + 2.0).rem_euclid(4.0) - 2.0
@@ -236,10 +287,11 @@ impl Relaxation {
         mesh.vertices().map(|v| sum[v] / area[v]).collect()
     }
 
-    /// Rotations of the faces in the layout.
-    pub(super) fn frames(mut self) -> Vec<Complex64> {
-        self.local_step(0.0);
-        self.frames
+    /// The faces as they are turned now.
+    pub(super) fn into_faces(mut self) -> Faces {
+        self.local_step(Step::PLAIN);
+        let frames = self.frames.iter().zip(self.gauge.iter());
+        Faces { frames: frames.map(|(&r, &k)| turn(r, -k)).collect(), wanted: self.wanted }
     }
 }
 
@@ -254,13 +306,18 @@ fn corner_weights(mesh: &TriMesh, metric: &Metric) -> Vec<Complex64> {
 }
 
 /// All aligned half-edges, and the place of each in the list.
-fn aligned_edges(sectors: &Sectors<'_>, cut: &Cut) -> (Vec<AlignedEdge>, HalfedgeData<u32>) {
+fn aligned_edges(
+    sectors: &Sectors<'_>,
+    cut: &Cut,
+    gauge: &FaceData<i32>,
+) -> (Vec<AlignedEdge>, HalfedgeData<u32>) {
     let mut place = HalfedgeData::filled(sectors.slit().n_halfedges(), u32::MAX);
     for (k, h) in sectors.aligned().enumerate() {
         place[h] = k as u32;
     }
     let edge = |h| AlignedEdge {
         ends: cut.ends(h),
+        gauge: gauge[h.face()],
         twin: sectors.mesh().twin(h).map(|t| place[t]),
         direction: None,
     };

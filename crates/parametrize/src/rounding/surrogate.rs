@@ -2,7 +2,6 @@
 
 use crate::cotangent::edge_weight;
 use crate::features::Sectors;
-use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
 use seamstress_mesh::{Metric, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
@@ -62,8 +61,8 @@ impl<'a> Surrogate<'a> {
         let mut builder = PatternBuilder::new(n);
         mesh.edges().for_each(|h| builder.add_clique(&ends(h)));
         let pattern = builder.build();
-        let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
-        let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
+        let vertices = mesh.vertices().map(|s| (s.0, sectors.vertex(s).0));
+        let order = sectors.dissection().induced(n, vertices);
         let mut cholesky = Cholesky::analyze(&pattern, &order)?;
         let cotangent = metric.cotangent();
         let area = metric.vertex_area(mesh);

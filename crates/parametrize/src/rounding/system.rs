@@ -1,7 +1,7 @@
 //! The linear system of the relaxation.
 
 use num_complex::Complex64;
-use seamstress_linalg::ordering::{Graph, expand, fill_reducing_order};
+use seamstress_linalg::ordering::expand;
 use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
 
 /// Shift of the diagonal; the rows have weights of order one and more.
@@ -24,24 +24,22 @@ pub(super) enum RelaxationSystem {
 }
 
 impl RelaxationSystem {
-    /// The form zero, with room for rows among the points of each clique; `real` if single coordinates
-    /// will appear.
+    /// The form zero, with room for rows among the points of each clique, which are eliminated in the given order; `real` if
+    /// single coordinates will appear.
     ///
     /// # Errors
     /// When the factorisation cannot be set up (memory).
     pub(super) fn new<'a>(
-        n: usize,
-        cliques: impl Iterator<Item = &'a [u32]> + Clone,
+        order: &[u32],
+        cliques: impl Iterator<Item = &'a [u32]>,
         real: bool,
     ) -> Result<Self, NotPositiveDefinite> {
-        let pairs =
-            |w: &'a [u32]| (0..w.len()).flat_map(move |i| (0..i).map(move |j| (w[j], w[i])));
-        let order = fill_reducing_order(&Graph::from_edges(n, cliques.clone().flat_map(pairs)));
+        let n = order.len();
         if !real {
-            return MatrixForm::new(n, cliques.map(<[u32]>::to_vec), &order).map(Self::Complex);
+            return MatrixForm::new(n, cliques.map(<[u32]>::to_vec), order).map(Self::Complex);
         }
         let both = |w: &[u32]| w.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect();
-        let form = MatrixForm::new(2 * n, cliques.map(both), &expand(&order, 2))?;
+        let form = MatrixForm::new(2 * n, cliques.map(both), &expand(order, 2))?;
         Ok(Self::Real { form, coordinates: vec![0.0; 2 * n] })
     }
 

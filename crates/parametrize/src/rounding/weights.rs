@@ -10,9 +10,9 @@ const BOUND_WEIGHT: f64 = 2.0;
 /// The cost of a sector.
 #[derive(Debug, Clone, Copy)]
 struct Cost {
-    /// Weight of the distance from the preferred index.
+    /// Weight of the distance from the preferred indices.
     weight: f64,
-    preferred: f64,
+    preferred: [f64; 2],
     /// Smallest and largest index at a feature; outside of them it costs more.
     bounds: (f64, f64),
 }
@@ -38,16 +38,17 @@ impl SectorWeights {
             } else {
                 (f64::NEG_INFINITY, f64::INFINITY)
             };
-            Cost { weight, preferred: f64::from(sectors.preferred(s)), bounds }
+            Cost { weight, preferred: sectors.preferences(s).map(f64::from), bounds }
         };
         Self(sectors.slit().vertices().map(cost).collect())
     }
 
     /// Change of the cost of a sector when its index goes from `index` to `index + by`.
     pub(super) fn change(&self, sector: Vertex, index: f64, by: f64) -> f64 {
-        let Cost { weight, preferred, bounds: (low, high) } = self.0[sector];
-        let deviation = |k: f64| (k - preferred).abs();
-        let excess = |k: f64| (low - k).max(0.0) + (k - high).max(0.0);
+        let Cost { weight, preferred: [least, most], bounds: (low, high) } = self.0[sector];
+        let outside = |k: f64, low: f64, high: f64| (low - k).max(0.0) + (k - high).max(0.0);
+        let deviation = |k: f64| outside(k, least, most);
+        let excess = |k: f64| outside(k, low, high);
         weight * (deviation(index + by) - deviation(index))
             + BOUND_WEIGHT * (excess(index + by) - excess(index))
     }

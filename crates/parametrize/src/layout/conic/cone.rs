@@ -56,6 +56,13 @@ pub(super) fn largest_step<const D: usize>(u: &[f64; D], d: &[f64; D]) -> f64 {
     smallest_positive_root(form(d, d), 2.0 * form(u, d), size(u).powi(2))
 }
 
+/// Whether a step from inside along `d` ends inside.
+#[inline]
+pub(super) fn stays_inside<const D: usize>(u: &[f64; D], d: &[f64; D], step: f64) -> bool {
+    let end: [f64; D] = std::array::from_fn(|k| u[k] + step * d[k]);
+    end[0] > 0.0 && form(&end, &end) > 0.0
+}
+
 /// The scaling `W` of a pair of inner elements with `W dual = W^-1 slack`, symmetric and positive
 /// definite (Nesterov and Todd 1998).
 #[derive(Debug, Clone, Copy)]
@@ -104,6 +111,16 @@ impl<const D: usize> Scaling<D> {
         self.apply_signed(a, -1.0, 1.0 / self.eta)
     }
 
+    /// `W^-2 a`.
+    #[inline]
+    pub(super) fn apply_inverse_square(&self, a: &[f64; D]) -> [f64; D] {
+        let (scale, v) = self.inverse_square();
+        let along = 2.0 * dot(&v, a);
+        let mut out = std::array::from_fn(|k| scale * (along * v[k] + a[k]));
+        out[0] = scale * (along * v[0] - a[0]);
+        out
+    }
+
     /// `W^-2 = scale (2 v v^T - diag(1, -1, ..., -1))`: the scale and `v`.
     #[inline]
     pub(super) fn inverse_square(&self) -> (f64, [f64; D]) {
@@ -142,6 +159,7 @@ mod tests {
             scale * (2.0 * v[k] * dot(&v, &U) + diagonal)
         });
         assert!(close(by_form, scaling.apply_inverse(&scaling.apply_inverse(&U))));
+        assert!(close(by_form, scaling.apply_inverse_square(&U)));
         let five = Scaling::new(&[3.0, 1.0, 1.0, 1.0, 1.0], &[2.0, -1.0, 0.0, 0.5, 0.0]);
         assert!(close(
             five.apply(&[2.0, -1.0, 0.0, 0.5, 0.0]),

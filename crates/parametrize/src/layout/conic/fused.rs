@@ -13,7 +13,7 @@ use crate::progress::{Cancelled, Watch};
 /// it creeps.
 const GAP: f64 = 1e-3;
 const MAX_ITERATIONS: usize = 60;
-/// Where the energy is traded for tau later iterations gain a part in a hundred of tau at most.
+/// Trades of the energy for tau, most of which end before.
 const MAX_TRADES: usize = 16;
 
 impl Run<'_> {

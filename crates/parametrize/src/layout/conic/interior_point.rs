@@ -57,8 +57,9 @@ pub(super) struct Tradeoff<'a> {
     pub(super) weigh: &'a mut Weigh<'a>,
 }
 
-/// Gives the best global scale and a weight for a layout.
-pub(super) type Weigh<'a> = dyn FnMut(&LayoutProblem, &[f64], &[Complex64]) -> (f64, f64) + 'a;
+/// Gives the best global scale and a weight for a layout; none to stop there.
+pub(super) type Weigh<'a> =
+    dyn FnMut(&LayoutProblem, &[f64], &[Complex64]) -> Option<(f64, f64)> + 'a;
 
 /// As [`solve`] for programs of [`ProgramKind::Stretch`], frames renewed, with the energy as a term of the objective.
 ///
@@ -179,7 +180,9 @@ impl<const D: usize, const C: usize, K: Cones<D, C>> Run<'_, '_, D, C, K> {
                 return Ok(Outcome::IterationLimit);
             }
             if let Some(Tradeoff { term, weigh }) = &mut self.tradeoff {
-                let (scale, weight) = weigh(self.problem, &v.y, &v.z);
+                let Some((scale, weight)) = weigh(self.problem, &v.y, &v.z) else {
+                    return Ok(Outcome::IterationLimit);
+                };
                 term.add_to(self.problem, &v.y, scale, weight);
             }
             let raised = |&raise: &f64| self.problem.factorize_as_is(raise).is_ok();

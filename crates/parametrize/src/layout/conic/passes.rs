@@ -1,7 +1,7 @@
 //! The passes over the triangles of one interior-point iteration.
 
 use super::cells::{Cones, Elimination};
-use super::cone::{Scaling, dot, largest_step, product, quotient};
+use super::cone::{Scaling, dot, largest_step, product, quotient, stays_inside};
 use super::element::{block_back, parts, vector_back};
 use super::program::Renewal;
 use crate::energy::Triangle;
@@ -25,6 +25,9 @@ pub(super) struct Cell<const D: usize, const C: usize> {
     pub(super) scaling: [Scaling<D>; C],
 }
 
+/// Far beyond the whole steps that are taken.
+const LONGEST_STEP: f64 = 4.0;
+
 /// Reductions over the triangles.
 pub(super) struct Tally {
     /// `sum of slack . dual`.
@@ -33,13 +36,13 @@ pub(super) struct Tally {
     pub(super) corner: f64,
     /// `sum of slack_step . dual`, `slack . dual_step`, `slack_step . dual_step`.
     products: [f64; 3],
-    /// Largest primal and dual steps.
+    /// Largest primal and dual steps, at most [`LONGEST_STEP`].
     pub(super) steps: [f64; 2],
 }
 
 impl Default for Tally {
     fn default() -> Self {
-        Self { gap: 0.0, corner: 0.0, products: [0.0; 3], steps: [f64::INFINITY; 2] }
+        Self { gap: 0.0, corner: 0.0, products: [0.0; 3], steps: [LONGEST_STEP; 2] }
     }
 }
 
@@ -54,7 +57,10 @@ impl Tally {
     }
 
     fn reach<const D: usize>(&mut self, at: &[f64; D], step: &[f64; D], which: usize) {
-        self.steps[which] = self.steps[which].min(largest_step(at, step));
+        // Most triangles do not hold a step up: that is seen without a root.
+        if !stays_inside(at, step, self.steps[which]) {
+            self.steps[which] = self.steps[which].min(largest_step(at, step));
+        }
     }
 
     /// Mehrotra's centring parameter after an affine step: the cube of the part of the gap it leaves.
@@ -100,8 +106,7 @@ impl<const D: usize, const C: usize> Cell<D, C> {
 
     /// `W^-2` times the slack's step.
     fn scaled_slack_step(&self, c: usize) -> [f64; D] {
-        let w = &self.scaling[c];
-        w.apply_inverse(&w.apply_inverse(&self.slack_step[c]))
+        self.scaling[c].apply_inverse_square(&self.slack_step[c])
     }
 }
 
