@@ -55,11 +55,10 @@ fn lay_out_cleaned(
     cleaned: &Cleaned,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
-    // Between features the last rung seldom helps, and costs most; along a guide more cones depend on it.
-    let effort = if domain.any_aligned() && domain.guide.is_none() {
-        LayoutEffort::Brief
-    } else {
-        LayoutEffort::Thorough
+    // The last rung costs most, and what it finds is seldom as good as expected; along a guide more cones depend on it.
+    let effort = match domain.guide {
+        None => LayoutEffort::Brief,
+        Some(_) => LayoutEffort::Thorough,
     };
     let (sectors, metric) = (&domain.sectors, &domain.metric);
     let layout = ladder::lay_out(sectors, metric, &cleaned.start, effort, watch);
