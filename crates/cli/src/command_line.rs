@@ -115,7 +115,7 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 23] = [
+const RARE: [&str; 24] = [
     "uv_set",
     "raw",
     "source_points",
@@ -126,6 +126,7 @@ const RARE: [&str; 23] = [
     "min_edge",
     "max_edge",
     "size_growth",
+    "pack_margin",
     "cone_bias",
     "cone_price",
     "angle",
@@ -153,8 +154,13 @@ pub(crate) fn definition() -> clap::Command {
     let all = EVERYDAY.into_iter().fold(CommandLine::command(), |all, name| {
         all.mut_subcommand(name, |command| command.mut_args(put_away))
     });
-    // Integer-grid maps cannot be made symmetric; quads can.
-    all.mut_subcommand("integer", |command| command.mut_arg("symmetry", |arg| arg.hide(true)))
+    // Integer-grid maps cannot be made symmetric; quads can. Neither are packed.
+    let refused =
+        [("integer", &["symmetry", "pack", "pack_margin"][..]), ("quad", &["pack", "pack_margin"])];
+    refused.into_iter().fold(all, |all, (name, options)| {
+        let hide = |command: clap::Command, option| command.mut_arg(option, |arg| arg.hide(true));
+        all.mut_subcommand(name, |command| options.iter().fold(command, hide))
+    })
 }
 
 impl CommandLine {

@@ -5,7 +5,8 @@ use crate::text::{as_options, counted, listing, rounded, row};
 use seamstress::{
     Alignment, Certificate, ComponentStats, ConeReport, Distortion, FailedPart, FeatureReport,
     IntegerCertificate, MapReport, Measure, Measurement, MixedIntegerStats, Orientation,
-    PartReport, QuadMeshReport, QualityReport, SizeReport, SurfaceReport, SymmetryReport,
+    PackingReport, PartReport, QuadMeshReport, QualityReport, SizeReport, SurfaceReport,
+    SymmetryReport,
 };
 
 /// Dropped features that are listed; the report has them all.
@@ -56,6 +57,25 @@ pub(crate) fn size_rows(report: &SurfaceReport) -> Option<String> {
         text += &format!(", smallest angle {} degrees", rounded(angle.to_degrees()));
     }
     Some(row("shape", &text))
+}
+
+/// The charts in the unit square.
+pub(crate) fn packing_rows(report: &PackingReport) -> Vec<String> {
+    let cut = match report.overlapping.len() {
+        0 => String::new(),
+        n => format!(", cut from {} since {} overlap", report.islands, counted(n, "triangle")),
+    };
+    let charts = counted(report.charts, "chart");
+    let texture = format!("{0} by {0} texels, {1} between charts", report.texels, report.margin);
+    let density = rounded(report.density);
+    let covered = 100.0 * report.covered;
+    vec![
+        row("charts", &format!("{charts}{cut}")),
+        row(
+            "texture",
+            &format!("{texture}; {density} texels a unit of length, {covered:.0} % covered"),
+        ),
+    ]
 }
 
 /// The planes of symmetry.

@@ -17,6 +17,7 @@
     )
 )]
 
+pub mod atlas;
 mod chebyshev;
 pub mod consistency;
 mod cotangent;

@@ -79,6 +79,7 @@ mod mesh_format;
 mod mirrored;
 mod optimize;
 mod options;
+mod packing;
 #[cfg(feature = "page")]
 mod page;
 mod parts;
@@ -126,6 +127,7 @@ pub use map::{MapReport, SeamlessMap, UvSet};
 pub use mesh_format::MeshFormat;
 pub use optimize::{ConicSolver, OptimizeOptions, OptimizeReport};
 pub use options::{GridRounding, IntegerMapOptions, MapOptions, QuadOptions, ShapeOptions};
+pub use packing::PackingReport;
 #[cfg(feature = "page")]
 pub use page::Page;
 #[cfg(all(feature = "page", feature = "io"))]

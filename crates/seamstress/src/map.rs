@@ -6,6 +6,7 @@ use crate::feature_sources::Features;
 use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport};
 use crate::finding::{Elements, listing};
 use crate::options::MapOptions;
+use crate::packing::PackingReport;
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
 use crate::sizes::SizeReport;
 use crate::surface::Surface;
@@ -15,12 +16,14 @@ use crate::words::{counted, rounded};
 use seamstress_mesh::Vertex;
 #[cfg(feature = "io")]
 use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
+use seamstress_parametrize::atlas::Atlas;
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
-    self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Violations,
-    make_aligned_map,
+    self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Tolerance,
+    Violations, make_aligned_map,
 };
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 #[cfg(feature = "io")]
 use std::{io, path::Path};
@@ -33,6 +36,8 @@ pub struct SeamlessMap<R = MapReport> {
     corners: CornerUvs,
     features: Option<AlignedFeatures>,
     distortion: Distortion,
+    /// Units of the map in a unit of the mesh.
+    scale: f64,
     report: R,
 }
 
@@ -60,6 +65,9 @@ pub struct MapReport {
     pub seams: SeamReport,
     /// What was checked of it.
     pub certificate: Certificate,
+    /// How its charts were packed, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<PackingReport>,
     /// What made it symmetric, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<SymmetryReport>,
@@ -119,10 +127,27 @@ impl SeamlessMap {
             cones: ConeReport::new(map.cones()),
             seams: SeamReport::new(map.seams()),
             certificate: map.certificate().clone(),
+            packing: None,
             symmetry: None,
             features: features.as_ref().map(|features| features.report.clone()),
         };
         Self::reported(surface, map, features, report)
+    }
+
+    /// The same with its charts in the unit square, where options ask for that.
+    pub(crate) fn packed(mut self, options: &MapOptions) -> Result<Self, Error> {
+        let Some(texels) = options.pack else { return Ok(self) };
+        let mesh = self.surface.mesh();
+        let atlas = Atlas::new(mesh, self.corner_uvs(), texels, options.pack_margin)
+            .map_err(|cause| PackingReport::refusal(&cause))?;
+        self.scale = atlas.density / f64::from(texels);
+        self.report.packing = Some(PackingReport::new(&atlas, options));
+        self.map = method::SeamlessMap::certify(mesh, atlas.corner_uvs, &Tolerance::default())
+            .map_err(|violations| self.surface.no_map(&MapError::Uncertified(violations)))?;
+        self.corners = CornerUvs::new(self.surface.faces(), self.map.corner_uvs());
+        self.report.seams = SeamReport::new(self.map.seams());
+        self.report.certificate = self.map.certificate().clone();
+        Ok(self)
     }
 
     pub(crate) fn with_symmetry(mut self, symmetry: SymmetryReport) -> Self {
@@ -140,7 +165,15 @@ impl<R> SeamlessMap<R> {
     ) -> Self {
         let corners = CornerUvs::new(surface.faces(), map.corner_uvs());
         let distortion = surface.distortion(map.corner_uvs());
-        Self { surface: surface.without_wishes(), map, corners, features, distortion, report }
+        Self {
+            surface: surface.without_wishes(),
+            map,
+            corners,
+            features,
+            distortion,
+            scale: 1.0,
+            report,
+        }
     }
 
     /// The surface it is of.
@@ -148,7 +181,7 @@ impl<R> SeamlessMap<R> {
         &self.surface
     }
 
-    /// The UVs, mesh units: one for each vertex, and one more wherever a seam gives it another.
+    /// The UVs, mesh units unless it is packed: one for each vertex, and one more wherever a seam gives it another.
     pub fn uvs(&self) -> &[[f64; 2]] {
         &self.corners.uvs
     }
@@ -196,6 +229,14 @@ impl<R> SeamlessMap<R> {
     /// How it was made, and how good it is.
     pub fn report(&self) -> &R {
         &self.report
+    }
+
+    /// The UV of every corner in mesh units.
+    pub(crate) fn unscaled_uvs(&self) -> Cow<'_, [[f64; 2]]> {
+        match self.scale {
+            1.0 => Cow::Borrowed(self.corner_uvs()),
+            scale => self.corner_uvs().iter().map(|uv| uv.map(|x| x / scale)).collect(),
+        }
     }
 
     pub(crate) fn inner(&self) -> &method::SeamlessMap {
@@ -335,7 +376,7 @@ impl Surface {
         let made = self.context().run(|watcher| {
             let asked = self.features(&options.features)?;
             let sized = self.prepared_for_textures(&asked, options)?;
-            sized.direct_map(asked, options, options.to_method(), watcher)
+            sized.direct_map(asked, options, options.to_method(), watcher)?.packed(options)
         });
         made.map_err(|error| error.of(self.input()))
     }

@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
+/// Texels on a side of the largest texture that charts are packed for.
+const LARGEST_TEXTURE: u32 = 32_768;
+
 /// Options of [`Surface::parametrize`](crate::Surface::parametrize).
 ///
 /// In JSON an object with any of the fields; times are in seconds.
@@ -89,6 +92,17 @@ pub struct MapOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PLANES", default_value_t))]
     pub symmetry: Symmetry,
 
+    /// Move the charts of the map into the unit square, side by side without overlap, for a texture of so many texels on a
+    /// side, 2048 if no number is given. All have one scale and are turned by quarters only, so that the map stays
+    /// seamless; a chart that lies over itself is cut
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", num_args = 0..=1, require_equals = true,
+        default_missing_value = "2048", value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_TEXTURE))))]
+    pub pack: Option<u32>,
+
+    /// Texels between charts that are packed, and at the sides of the square
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = Self::default().pack_margin))]
+    pub pack_margin: u32,
+
     /// How much to avoid cones: 0 gives the lowest distortion, larger values fewer cones
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative,
         default_value_t = Self::default().cone_bias))]
@@ -142,6 +156,8 @@ impl Default for MapOptions {
             max_edge: None,
             size_growth: 0.25,
             symmetry: Symmetry::None,
+            pack: None,
+            pack_margin: 4,
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
@@ -214,10 +230,22 @@ impl MapOptions {
         {
             return Err(Error::options(format!("min_edge: {least} is more than {largest}")));
         }
+        if let Some(texels) = self.pack.filter(|texels| !(1..=LARGEST_TEXTURE).contains(texels)) {
+            let text = format!("pack: {texels} is not between 1 and {LARGEST_TEXTURE}");
+            return Err(Error::options(text));
+        }
         not_negative("cone_bias", self.cone_bias)?;
         not_negative("corner_weight", self.corner_weight)?;
         not_negative("max_energy_rise", self.max_energy_rise)?;
         self.cone_price.map_or(Ok(()), |price| not_negative("cone_price", price))
+    }
+
+    /// Refuses to pack what is no map.
+    fn refuse_packing(&self) -> Result<(), Error> {
+        match self.pack {
+            None => Ok(()),
+            Some(_) => Err(Error::options("pack: only charts of seamless maps are packed")),
+        }
     }
 
     /// The same with features chosen where that was left open.
@@ -328,6 +356,7 @@ impl IntegerMapOptions {
     /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
     pub fn validate(&self) -> Result<(), Error> {
         self.size.validate()?;
+        self.map.refuse_packing()?;
         self.map.validate()
     }
 
@@ -427,6 +456,7 @@ impl QuadOptions {
     /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
     pub fn validate(&self) -> Result<(), Error> {
         self.size.validate()?;
+        self.map.refuse_packing()?;
         self.map.validate()
     }
 }

@@ -178,7 +178,7 @@ impl<R: Described> SeamlessMap<R> {
     /// [`ErrorKind::NoPicture`].
     pub fn pictures(&self, texture: &TextureOptions) -> Result<MapPictures, Error> {
         let texture = TextureOptions { period: texture.period.or(R::CHECK), ..*texture };
-        draw_map(self.surface(), self.inner(), self.features(), &texture)
+        draw_map(self.surface(), (self.inner(), &self.unscaled_uvs()), self.features(), &texture)
     }
 }
 
@@ -275,11 +275,11 @@ fn png(image: &Image) -> Result<Vec<u8>, RenderError> {
 /// Draws a map with its features, aligned and dropped; the texture is turned, scaled and shifted first.
 fn draw_map(
     surface: &Surface,
-    map: &method::SeamlessMap,
+    (map, corner_uvs): (&method::SeamlessMap, &[[f64; 2]]),
     features: Option<&AlignedFeatures>,
     texture: &TextureOptions,
 ) -> Result<MapPictures, Error> {
-    let corner_uvs: Vec<[f64; 2]> = map.corner_uvs().iter().map(|&uv| texture.apply(uv)).collect();
+    let corner_uvs: Vec<[f64; 2]> = corner_uvs.iter().map(|&uv| texture.apply(uv)).collect();
     let cones: Vec<(u32, i32)> = map.cones().iter().map(|c| (c.vertex, c.index)).collect();
     let seams: Vec<[u32; 2]> = map.seams().iter().map(|s| s.vertices).collect();
     let dropped = features.map(AlignedFeatures::dropped_pairs).unwrap_or_default();

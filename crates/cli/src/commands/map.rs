@@ -19,6 +19,7 @@ Examples:
   seamstress map bunny.ply -o bunny.obj --report bunny.json --pictures bunny
   seamstress map scan.stl -o scan.obj --repair --time-limit 60
   seamstress map part.obj -o part_map.obj --features angle:40 --features boundary
+  seamstress map toy.obj -o toy_uv.obj --pack=4096
   seamstress map part.off -o part.obj --json | jq .distortion.tau
   seamstress lab map eight.off -o eight.obj --field eight.rawfield
   seamstress lab map eight.off -o eight.obj --cones eight.sing --free-cones
@@ -173,6 +174,7 @@ impl Command for MapArgs {
         rows.extend(map.symmetry.iter().flat_map(summary::symmetry_rows));
         rows.extend(map.features.iter().flat_map(summary::feature_rows));
         rows.extend(summary::map_rows(map));
+        rows.extend(map.packing.iter().flat_map(summary::packing_rows));
         rows.extend(summary::mixed_integer_rows(&map.components));
         rows.extend(map.features.iter().flat_map(summary::aligned_rows));
         rows

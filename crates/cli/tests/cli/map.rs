@@ -247,3 +247,33 @@ fn what_a_mesh_carries_stays_in_its_map_and_comes_over_to_its_quads() {
     assert_eq!((6 * n_red.sum::<usize>(), n_faces % 6), (n_faces, 0));
     assert!(!lines_of(&quads, "vt").is_empty());
 }
+
+#[test]
+fn packed_charts_are_in_the_unit_square_and_the_map_is_still_seamless() {
+    let folder = Folder::new();
+    let pair = [testkit::cube(), testkit::bumpy(&testkit::icosphere(2), 0.1, 1)];
+    folder.write("in.obj", obj(&testkit::disjoint_union(&pair)));
+    let arguments = ["map", "in.obj", "-o", "map.obj", "--pack=256", "--report", "map.json"];
+    let run = folder.expect(0, &arguments);
+    assert!(run.stdout.contains("texture      256 by 256 texels, 4 between charts"), "{run:?}");
+    let report: Value = serde_json::from_str(&folder.read("map.json")).unwrap();
+    let packing = &report["packing"];
+    let covered = packing["covered"].as_f64().unwrap();
+    assert!((0.2..1.0).contains(&covered), "{packing}");
+    assert!(packing["charts"].as_u64() >= packing["islands"].as_u64(), "{packing}");
+    let map = folder.read("map.obj");
+    let margin = 4.0 / 256.0 - 1e-12;
+    for uv in lines_of(&map, "vt") {
+        let inside = |x: &str| (margin..=1.0 - margin).contains(&x.parse::<f64>().unwrap());
+        assert!(uv.split(' ').all(inside), "{uv}");
+    }
+    folder.expect(0, &["check", "in.obj", "map.obj"]);
+    // The same distortion as without.
+    let plain = folder.expect(0, &["map", "in.obj", "-o", "plain.obj", "--json"]);
+    let plain: Value = serde_json::from_str(&plain.stdout).unwrap();
+    assert_eq!(plain["distortion"], report["distortion"]);
+    let full = folder.expect(2, &["map", "in.obj", "-o", "full.obj", "--pack=8"]);
+    assert!(full.stderr.contains("texels do not fit into 8 by 8 texels"), "{full:?}");
+    let quads = folder.expect(2, &["quad", "in.obj", "--quads", "50", "-o", "q.obj", "--pack"]);
+    assert!(quads.stderr.contains("only charts of seamless maps are packed"), "{quads:?}");
+}

@@ -51,6 +51,8 @@ class MapOptions(RunOptions, total=False):
     max_edge: float | None
     size_growth: float
     symmetry: str
+    pack: int | None
+    pack_margin: int
     cone_bias: float
     cone_price: float | None
     corner_weight: float

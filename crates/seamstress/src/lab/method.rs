@@ -27,6 +27,7 @@ impl Surface {
             let sized = self.prepared_for_textures(&asked, &options.map)?;
             if matches!(start, Start::Mesh) {
                 let made = sized.direct_map(asked, &options.map, settings, watcher)?;
+                let made = made.packed(&options.map)?;
                 return Ok(LaidOut::Certified(Box::new(made)));
             }
             options.map.symmetry.refuse()?;
@@ -36,7 +37,7 @@ impl Surface {
             let solution = made.map_err(|cause| self.no_map(&cause))?;
             let map =
                 SeamlessMap::new(&sized, solution.map, None, &options.map, solution.components);
-            Ok(LaidOut::Certified(Box::new(map)))
+            Ok(LaidOut::Certified(Box::new(map.packed(&options.map)?)))
         });
         made.map_err(|error| error.of(self.input()))
     }

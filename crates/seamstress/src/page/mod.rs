@@ -215,7 +215,7 @@ impl<R: Explained + Serialize> SeamlessMap<R> {
             corners: surface.faces().as_flattened(),
             sides: 3,
             corner_uvs: Some(self.corner_uvs()),
-            values: &surface.tau(self.corner_uvs()),
+            values: &surface.tau(&self.unscaled_uvs()),
             features: self.aligned_edges(),
         };
         Page::new(facts, self.report(), &drawing)
