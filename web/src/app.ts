@@ -157,7 +157,7 @@ function showOutcome(outcome: Outcome, seconds: number, next?: string): void {
             outcome.file(name).then((bytes) => { download(`${base}${ending}`, bytes as BlobPart, 'application/octet-stream'); }, fail);
         } }, ending.replace(/^.*\./, '').toUpperCase());
     const [kind, formats] = scene.sides === 4 ? ['quads', ['obj', 'ply', 'glb']] : ['map', isMesh ? [] : ['obj', 'ply', 'glb']];
-    const saves = [...formats.map((format) => save(`_${kind}.${format}`)), save('.html', 'page.html')];
+    const saves = [...formats.map((format) => save(`_${kind}.${format}`)), save('.json', 'report.json'), save('.html', 'page.html')];
     side.replaceChildren(heading(result), h('p', { class: 'saves' }, 'Save as ', ...saves), ...sections(result, (vertices, faces) => { panel.goTo(vertices, faces); }));
     say(...[`Done in ${seconds.toFixed(1)} s.`, ...(next ? [next] : [])].map((text) => h('p', { class: 'meaning' }, text)));
     panel.reveal();

@@ -4,7 +4,7 @@ import { h } from './dom';
 import { makeModel, type Model } from './model';
 import { Panel } from './panel';
 import { inflate, polygonCount, unpackScene } from './scene';
-import { heading, sections } from './sections';
+import { heading, saveReport, sections } from './sections';
 import { parseSettings, settingsText, suitable, type Settings } from './settings';
 
 declare global {
@@ -42,7 +42,7 @@ function one(model: Model): Panel[] {
     const usual = suitable(model);
     const panel = new Panel(model, addressed(model), { change: (settings) => { keepInAddress(settings, usual); } });
     const aside = h('aside', { tabindex: 0, 'aria-label': 'About the result' },
-        heading(model.result), ...sections(model.result, (vertices, faces) => { panel.goTo(vertices, faces); }));
+        heading(model.result), ...sections(model.result, (vertices, faces) => { panel.goTo(vertices, faces); }, saveReport(model.result)));
     document.body.append(h('main', { class: 'report' }, panel.element, aside));
     return [panel];
 }

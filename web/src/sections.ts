@@ -21,8 +21,8 @@ export function heading({ facts }: Result, kind = facts.kind): HTMLElement {
         h('p', { class: 'headline' }, h('span', { class: isGood ? 'mark good' : 'mark bad', 'aria-hidden': 'true' }, isGood ? '✓' : '✕'), facts.headline));
 }
 
-/** All that is said of a result. */
-export function sections(result: Result, goTo: GoTo): HTMLElement[] {
+/** All that is said of a result; with `save` to save its report, where nothing else does. */
+export function sections(result: Result, goTo: GoTo, save?: HTMLElement): HTMLElement[] {
     const { facts } = result;
     const parts = [
         section('What was checked', h('ul', { class: 'claims' }, ...facts.claims.map(claim))),
@@ -30,7 +30,7 @@ export function sections(result: Result, goTo: GoTo): HTMLElement[] {
     ];
     if (facts.notes.length > 0) parts.push(section('Notes and warnings', notes(facts.notes, goTo)));
     if (facts.dropped.length > 0) parts.push(section('Features that are not followed', dropped(result, goTo)));
-    parts.push(reproduce(result));
+    parts.push(reproduce(result, save));
     return parts;
 }
 
@@ -77,11 +77,15 @@ function dropped({ facts }: Result, goTo: GoTo): HTMLElement {
     return h('ul', { class: 'notes' }, ...rows);
 }
 
-function reproduce({ command, report, facts }: Result): HTMLElement {
-    const options = report.options === undefined ? [] : [h('details', {}, h('summary', {}, 'All options'), h('pre', { tabindex: 0 }, JSON.stringify(report.options, null, 2)))];
-    const line = command === null ? [] : [h('pre', { class: 'command', tabindex: 0 }, command)];
-    const save = h('button', { type: 'button', class: 'button', onclick: () => {
+/** Saves the report that a page has in itself. */
+export function saveReport({ report, facts }: Result): HTMLElement {
+    return h('button', { type: 'button', class: 'button', onclick: () => {
         download(`${facts.name.replace(/\.[^.]*$/, '')}.json`, JSON.stringify(report, null, 2), 'application/json');
     } }, 'Save the report as JSON');
-    return section('To repeat this', ...line, ...options, h('p', {}, save), h('p', { class: 'meaning' }, `Made by Seamstress ${facts.version}`));
+}
+
+function reproduce({ command, report, facts }: Result, save?: HTMLElement): HTMLElement {
+    const options = report.options === undefined ? [] : [h('details', {}, h('summary', {}, 'All options'), h('pre', { tabindex: 0 }, JSON.stringify(report.options, null, 2)))];
+    const line = command === null ? [] : [h('pre', { class: 'command', tabindex: 0 }, command)];
+    return section('To repeat this', ...line, ...options, ...(save ? [h('p', {}, save)] : []), h('p', { class: 'meaning' }, `Made by Seamstress ${facts.version}`));
 }

@@ -22,6 +22,19 @@ function verify(mesh, map) {
     run('check', mesh, map);
 }
 
+/** Saves what is said of the result: the page, and its report, which is returned. */
+async function saveReports(page, kind) {
+    const html = readFileSync(await save(page, 'HTML'), 'utf8');
+    expect(html.startsWith('<!doctype html>') && html.includes(`: ${kind}</title>`), 'the page is saved as one file');
+    return JSON.parse(readFileSync(await save(page, 'JSON'), 'utf8'));
+}
+
+/** A number as the page shows it. */
+function metric(page, name) {
+    return page.locator('.metrics tr').evaluateAll((rows, wanted) =>
+        rows.find((row) => row.querySelector('th').firstChild.textContent === wanted)?.querySelector('td').textContent, name);
+}
+
 async function makesQuads(page) {
     await sample(page, 'Step');
     await page.getByLabel('Number of quads, or edge length').fill('300');
@@ -42,6 +55,9 @@ async function makesQuads(page) {
     expect(binary.readUInt32LE(8) === binary.length, 'the GLB file says its length');
     const ply = JSON.parse(run('quality', await save(page, 'PLY'), '--json'));
     expect(ply.topology.polygons['4'] === count, 'the PLY file has the same quads');
+    const report = await saveReports(page, 'quad mesh');
+    const shown = await metric(page, 'Quads');
+    expect(report.quads.count === count && String(count) === shown, `${report.quads.count} of ${count} quads; the page shows ${shown}`);
     await expectAccessible(page);
 }
 
@@ -84,8 +100,10 @@ async function makesAMap(page) {
         const other = JSON.parse(uvs(await save(page, kind))).measures.find(({ measure }) => measure === 'tau');
         expect(Math.abs(other.max / tau.max - 1) < 1e-4, `${kind}: ${other.max} is not ${tau.max}`);
     }
-    const html = readFileSync(await save(page, 'HTML'), 'utf8');
-    expect(html.startsWith('<!doctype html>'), 'the page is saved as one file');
+    const report = await saveReports(page, 'seamless map');
+    const rounded = await metric(page, 'Tau');
+    const digits = rounded.split('.')[1]?.length ?? 0;
+    expect(report.distortion.tau === shown && shown.toFixed(digits) === rounded, `tau ${report.distortion.tau} is not ${shown}; the page shows ${rounded}`);
 }
 
 async function refuses(page) {

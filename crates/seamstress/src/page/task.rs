@@ -155,13 +155,16 @@ impl Done {
         &self.page
     }
 
-    /// The result as a file: a page, maps and quads in the format of the name.
+    /// The result as a file: a page, its report as JSON, maps and quads in the format of the name.
     ///
     /// # Errors
     /// [`ErrorKind::Unwritable`] if there is no such file of it.
     pub fn file(&self, name: &str) -> Result<Vec<u8>, Error> {
         if name.ends_with(".html") {
             return Ok(self.page.html().into_bytes());
+        }
+        if name.ends_with(".json") {
+            return Ok(format!("{:#}\n", self.page.report).into_bytes());
         }
         let path = Path::new(name);
         let mut file = Vec::new();

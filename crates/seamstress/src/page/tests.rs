@@ -142,6 +142,8 @@ fn a_preview_is_made_of_a_coarser_mesh_with_the_edges_that_were_picked() {
     );
     assert_eq!(facts["report"]["features"]["edges"], 2);
     assert!(done.file("ball.stl").is_err() && !done.file("ball.obj").unwrap().is_empty());
+    let report: Value = serde_json::from_slice(&done.file("report.json").unwrap()).unwrap();
+    assert_eq!(report, facts["report"]);
 }
 
 #[cfg(feature = "io")]
