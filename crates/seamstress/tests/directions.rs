@@ -70,6 +70,24 @@ fn plane_deviation(quads: &QuadMesh, direction: f64) -> f64 {
 }
 
 #[test]
+fn any_direction_in_a_plane_is_followed() {
+    let surface = square();
+    let name = format!("seamstress-{}-turned.rosy", std::process::id());
+    let file = std::env::temp_dir().join(name);
+    // The surface is unfolded along its sides: 45 degrees are as far from there as can be.
+    for degrees in [0.0, 15.0, 30.0, 45.0, 60.0] {
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        let rows = vec![format!("{cos} {sin} 0\n"); surface.faces().len()].concat();
+        std::fs::write(&file, format!("{}\n4\n{rows}", surface.faces().len())).unwrap();
+        let mut options = QuadOptions::count(400).features(Features::none());
+        options.map.directions = vec![DirectionSource::Field(file.clone())];
+        let found = plane_deviation(&surface.quad_mesh(&options).unwrap(), degrees);
+        assert!(found < 0.5, "{found} from {degrees} degrees");
+    }
+    std::fs::remove_file(file).unwrap();
+}
+
+#[test]
 fn strokes_fields_and_edges_are_followed() {
     let surface = square();
     let (sin, cos) = 30f64.to_radians().sin_cos();

@@ -7,6 +7,7 @@ use super::untangle::untangle;
 use crate::cut::{FramedCut, MatchedCut};
 use crate::features::Sectors;
 use crate::progress::{SolveError, Watch};
+use crate::quarter::direction;
 use seamstress_mesh::Metric;
 
 /// A flip-free exact layout with the right angles.
@@ -56,7 +57,13 @@ pub fn lay_out(
         Ok(Ok(SeamlessLayout { matched: matched.clone(), space, y, route, steps }))
     };
     if cut.seams.is_empty() && !sectors.any_aligned() {
-        let y = space.adopt(cut, &matched.unfolding.positions(sectors, metric));
+        let mut positions = matched.unfolding.positions(sectors, metric);
+        let y = space.adopt(cut, &positions);
+        // Nothing else tells how it lies in the plane.
+        let turns = frames.iter().zip(space.frames(&y)).zip(metric.area.iter());
+        let turn = direction(turns.map(|((to, from), area)| area * to * from.conj()).sum());
+        positions.iter_mut().for_each(|z| *z *= turn);
+        let y = space.adopt(cut, &positions);
         if space.defects(sectors, &y).none() {
             return held(space, y, Route::Isometric, 0);
         }
