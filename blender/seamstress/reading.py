@@ -126,7 +126,8 @@ def read(mesh: bpy.types.Mesh, linear: np.ndarray) -> Geometry:
 
 def edge_values(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
     """An attribute of edges as numbers; zero where there is none."""
-    attribute = mesh.attributes.get(name)
+    # Seams have the name of a hidden attribute before Blender 4.5.
+    attribute = mesh.attributes.get(name) or mesh.attributes.get("." + name)
     if attribute is None or attribute.domain != "EDGE" or attribute.data_type not in {"FLOAT", "BOOLEAN", "INT"}:
         return np.zeros(len(mesh.edges), np.float32)
     dtype = {"FLOAT": np.float32, "BOOLEAN": bool, "INT": np.int32}[attribute.data_type]
