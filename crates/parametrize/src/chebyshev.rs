@@ -1,5 +1,6 @@
 //! The Chebyshev iteration, which makes local and global steps converge in half of their number or less.
 
+use crate::quarter::direction;
 use num_complex::Complex64;
 
 /// The least part of their way to the limit that local and global steps go by themselves, for the rotations that matter;
@@ -18,8 +19,14 @@ impl Step {
     pub(crate) const PLAIN: Self = Self { length: 1.0, memory: 0.0 };
 
     /// Where the step leads from `x`, which came from `before`, if the iteration by itself leads to `image`.
-    pub(crate) fn from(self, x: Complex64, before: Complex64, image: Complex64) -> Complex64 {
+    fn from(self, x: Complex64, before: Complex64, image: Complex64) -> Complex64 {
         x + self.length * (image - x) + self.memory * (x - before)
+    }
+
+    /// Takes the step with a rotation, which came from `before`, if the iteration by itself leads to `best`.
+    pub(crate) fn turn(self, rotation: &mut Complex64, before: &mut Complex64, best: Complex64) {
+        let last = std::mem::replace(before, *rotation);
+        *rotation = direction(self.from(*rotation, last, best));
     }
 }
 

@@ -139,8 +139,8 @@ mod tests {
     fn pieces_of_a_graph_have_no_node_in_common() {
         let two = Dissection::new(&Graph::from_edges(4, [(0, 1), (2, 3)].into_iter()));
         let mut order = two.induced(3, [(0, 0), (1, 2), (2, 0), (2, 3)].into_iter());
-        order.truncate(3);
-        assert_eq!(order.len(), 3);
+        order.sort_unstable();
+        assert_eq!(order, [0, 1, 2]);
         assert_eq!(two.parent.iter().zip(0..).filter(|&(&p, k)| p == k).count(), 2);
     }
 }

@@ -102,8 +102,7 @@ impl<'p> Poisson<'p> {
             let z = self.problem.space().expand(&y);
             let turned = now.iter_mut().zip(&mut before).zip(frames(self.problem.triangles(), &z));
             for ((now, before), best) in turned {
-                let last = std::mem::replace(before, *now);
-                *now = direction(step.from(*now, last, best));
+                step.turn(now, before, best);
             }
             y = self.solve_frames(&now);
         }

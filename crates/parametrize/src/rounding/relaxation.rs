@@ -238,8 +238,7 @@ impl Relaxation {
             if let Some(&wanted) = wanted.get(f) {
                 similar += nearest_quarter(wanted, similar);
             }
-            let last = std::mem::replace(before, *frame);
-            *frame = direction(step.from(*frame, last, direction(similar)));
+            step.turn(frame, before, direction(similar));
         });
     }
 
