@@ -131,6 +131,14 @@ fn quadrics(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<Quadric> {
     quadrics
 }
 
+/// Room for the rings of two vertices, and for what it costs to go to those of the first.
+#[derive(Default)]
+struct Rings {
+    ring: Vec<u32>,
+    other: Vec<u32>,
+    costs: Vec<(f64, u32)>,
+}
+
 /// A mesh between two rounds.
 struct Round<'a> {
     positions: &'a [[f64; 3]],
@@ -171,23 +179,21 @@ impl<'a> Round<'a> {
     }
 
     /// The vertices that share an edge with one, ascending.
-    fn ring(&self, vertex: u32) -> Vec<u32> {
-        let mut ring: Vec<u32> = self
-            .star(vertex)
-            .iter()
-            .flat_map(|&face| self.face(face))
-            .filter(|&v| v != vertex)
-            .collect();
+    fn ring(&self, vertex: u32, ring: &mut Vec<u32>) {
+        ring.clear();
+        let corners = self.star(vertex).iter().flat_map(|&face| self.face(face));
+        ring.extend(corners.filter(|&v| v != vertex));
         ring.sort_unstable();
         ring.dedup();
-        ring
     }
 
     /// Where each vertex goes: at most so many to a neighbour, no two of which share a face with another.
     fn collapses(&self, is_kept: &[bool], at_most: usize) -> Vec<u32> {
         let vertices = 0..self.positions.len() as u32;
         let free = vertices.clone().filter(|&v| !is_kept[v as usize] && !self.star(v).is_empty());
-        let mut best: Vec<(f64, u32, u32)> = free.filter_map(|v| self.best(v)).collect();
+        let mut rings = Rings::default();
+        let mut best: Vec<(f64, u32, u32)> =
+            free.filter_map(|v| self.best(v, &mut rings)).collect();
         best.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         best.truncate(best.len().div_ceil(SHARE));
         let mut target: Vec<u32> = vertices.collect();
@@ -206,12 +212,17 @@ impl<'a> Round<'a> {
     }
 
     /// The cheapest collapse of a vertex into a neighbour that may be done.
-    fn best(&self, from: u32) -> Option<(f64, u32, u32)> {
-        let ring = self.ring(from);
-        let mut costs: Vec<(f64, u32)> = ring.iter().map(|&to| (self.cost(from, to), to)).collect();
+    fn best(&self, from: u32, rings: &mut Rings) -> Option<(f64, u32, u32)> {
+        let Rings { ring, other, costs } = rings;
+        self.ring(from, ring);
+        costs.clear();
+        costs.extend(ring.iter().map(|&to| (self.cost(from, to), to)));
         costs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let found = costs.into_iter().find(|&(_, to)| self.may_collapse(from, to, &ring));
-        found.map(|(cost, to)| (cost, from, to))
+        let found = costs.iter().find(|&&(_, to)| {
+            self.ring(to, other);
+            self.may_collapse(from, to, ring, other)
+        });
+        found.map(|&(cost, to)| (cost, from, to))
     }
 
     fn cost(&self, from: u32, to: u32) -> f64 {
@@ -223,14 +234,14 @@ impl<'a> Round<'a> {
     }
 
     /// Whether a collapse leaves a manifold of the same topology, and turns no face much.
-    fn may_collapse(&self, from: u32, to: u32, ring: &[u32]) -> bool {
+    fn may_collapse(&self, from: u32, to: u32, ring: &[u32], other: &[u32]) -> bool {
         let is_boundary = ring.len() != self.star(from).len();
-        let others = self.ring(to);
-        let common: Vec<u32> =
-            ring.iter().copied().filter(|v| others.binary_search(v).is_ok()).collect();
+        let is_in = |v: &u32, ring: &[u32]| ring.binary_search(v).is_ok();
+        let is_common = |v: &u32| is_in(v, ring) && is_in(v, other);
         let has_to = |&&face: &&u32| self.face(face).contains(&to);
         let n_shared = self.star(from).iter().filter(has_to).count();
-        if n_shared != if is_boundary { 1 } else { 2 } || common.len() != n_shared {
+        let n_common = ring.iter().filter(|v| is_in(v, other)).count();
+        if n_shared != if is_boundary { 1 } else { 2 } || n_common != n_shared {
             return false;
         }
         let mut moved = self
@@ -241,7 +252,7 @@ impl<'a> Round<'a> {
             .peekable();
         moved.peek().is_some()
             && moved.all(|face| {
-                let is_new = face.iter().filter(|v| common.contains(v)).count() < 2;
+                let is_new = face.iter().filter(|v| is_common(v)).count() < 2;
                 is_new && self.may_become(face, face.map(|v| if v == from { to } else { v }))
             })
     }

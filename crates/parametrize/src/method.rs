@@ -21,6 +21,7 @@ mod placement;
 mod relaxed;
 mod relayout;
 mod round;
+mod scout;
 mod solution;
 mod start;
 mod whole;
@@ -33,6 +34,7 @@ pub use relayout::{Relayout, RelayoutOptions, RelayoutStats, lay_out_disk, relay
 pub use solution::{ComponentStats, MapSolution, StageStats};
 pub use start::Start;
 
+use crate::cut::Unfolding;
 use crate::progress::{Stage, Watch};
 use certify::{ComponentMap, last_certified};
 use clean_up::clean_up;
@@ -42,6 +44,7 @@ use lay_out::lay_out;
 use log::StageLog;
 use relaxed::polish;
 use round::round;
+use scout::{LaidOut, scout};
 
 /// The seamless map of a connected mesh.
 ///
@@ -59,21 +62,14 @@ fn parametrize(
     log.enter(Stage::Cut, watch)?;
     let unfolding = domain.unfold();
 
-    // Round the turns of the seams to whole quarters.
-    log.enter(Stage::Rounding, watch)?;
-    let (domain, rounding) = round(domain, unfolding, start, options, watch)?;
-    log.count(rounding.stats.layouts);
-
-    // Clean up: fewer cones, as far as an estimate of the distortion pays for it.
-    log.enter(Stage::CleanUp, watch)?;
-    let cleaned = clean_up(&domain, &rounding.start, start, options, watch)?;
-
-    // Lay out with seams that close exactly, no flipped triangle and no wrong angle; and relax to the smallest mean
-    // distortion.
-    log.enter(Stage::Layout, watch)?;
-    let (domain, rounding, relaxed) =
-        lay_out(domain, rounding, cleaned.as_ref(), start, options, watch)?;
-    log.count(relaxed.iterations);
+    // Lay out and relax with the cones of a coarser mesh, found in a part of the time; where that is not as good as
+    // expected, or where a coarser mesh would not do, directly.
+    let scouted = scout(&domain, &unfolding, start, options, &mut log, watch)?;
+    let directly = |domain| lay_out_directly(domain, unfolding, start, options, &mut log, watch);
+    let (domain, rounding, relaxed) = match scouted {
+        Some(scouted) => scouted.or_better(domain, directly)?,
+        None => directly(domain)?,
+    };
 
     // Polish: lower the worst distortion for a bounded rise of the mean.
     log.enter(Stage::Polish, watch)?;
@@ -93,5 +89,35 @@ fn parametrize(
 
     // Certify: the thinnest triangles may flip when a layout is scaled and moved, so the last that passes is taken.
     let corner_uvs = last_certified(&domain, candidates, &options.tolerance)?;
-    Ok(ComponentMap::new(domain, corner_uvs, rounding.stats, route, log))
+    Ok(ComponentMap::new(domain, corner_uvs, rounding, route, log))
+}
+
+/// The relaxed layout with cones found on the mesh itself.
+///
+/// # Errors
+/// [`MethodError`].
+fn lay_out_directly<'m>(
+    domain: Domain<'m>,
+    unfolding: Unfolding,
+    start: &Start,
+    options: &MapOptions,
+    log: &mut StageLog,
+    watch: &mut Watch<'_, '_>,
+) -> Result<LaidOut<'m>, MethodError> {
+    // Round the turns of the seams to whole quarters.
+    log.enter(Stage::Rounding, watch)?;
+    let (domain, rounding) = round(domain, unfolding, start, options, watch)?;
+    log.count(rounding.stats.layouts);
+
+    // Clean up: fewer cones, as far as an estimate of the distortion pays for it.
+    log.enter(Stage::CleanUp, watch)?;
+    let cleaned = clean_up(&domain, &rounding.start, start, options, watch)?;
+
+    // Lay out with seams that close exactly, no flipped triangle and no wrong angle; and relax to the smallest mean
+    // distortion.
+    log.enter(Stage::Layout, watch)?;
+    let (domain, rounding, relaxed) =
+        lay_out(domain, rounding, cleaned.as_ref(), start, options, watch)?;
+    log.count(relaxed.iterations);
+    Ok((domain, rounding.stats, relaxed))
 }

@@ -6,6 +6,7 @@ mod gauge;
 pub(crate) mod isometric;
 mod matched;
 mod partial;
+mod prescribed;
 mod prune;
 mod steiner;
 mod unfolding;

@@ -24,6 +24,8 @@ const SLACKS: [f64; 2] = [0.01, 0.3];
 pub(super) struct Domain<'m> {
     /// The mesh slit along its aligned edges.
     pub(super) sectors: Sectors<'m>,
+    /// Where its vertices are.
+    pub(super) geometry: Geometry<'m>,
     /// The metric of the surface.
     pub(super) surface: &'m Metric,
     /// The metric to work in: that of the surface, in which triangles without area are opened, or every edge is longer by
@@ -47,7 +49,7 @@ impl<'m> Domain<'m> {
     /// In the metric of the surface, along features as far as these do not contradict each other.
     pub(super) fn new(
         mesh: &'m TriMesh,
-        geometry: Geometry<'_>,
+        geometry: Geometry<'m>,
         surface: &'m Metric,
         features: EdgeSet,
         options: &MapOptions,
@@ -61,6 +63,7 @@ impl<'m> Domain<'m> {
         let guide = options.guide(&sectors, geometry, &metric);
         Self {
             sectors,
+            geometry,
             surface,
             metric,
             guide,

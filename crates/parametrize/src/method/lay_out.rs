@@ -50,7 +50,7 @@ pub(super) fn lay_out<'m>(
 ///
 /// # Errors
 /// [`MethodError`].
-fn lay_out_cleaned(
+pub(super) fn lay_out_cleaned(
     domain: &Domain<'_>,
     cleaned: &Cleaned,
     watch: &mut Watch<'_, '_>,

@@ -1,5 +1,6 @@
 //! Choosing the rotations around handles and between boundaries for fixed cones.
 
+use super::lattice::closest_integers;
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::features::Sectors;
 use crate::field::{Guide, frames_of};
@@ -15,19 +16,9 @@ use std::f64::consts::FRAC_PI_2;
 const COTANGENT_RANGE: (f64, f64) = (0.1, 10.0);
 /// Directions that count fully pull with as much as turning across the mesh over so many cells costs.
 const PULL_LENGTH: f64 = 4.0;
-/// Passes of the integer descent; it ends by itself long before.
-const PASSES: usize = 50;
 /// Added to the diagonal of the face Laplacian, whose constants would be its null space where nothing is held: far below
 /// its other eigenvalues, far above rounding errors.
 const SHIFT: f64 = 1e-10;
-/// Passes of Gauss-Seidel for the real solution, which is only rounded.
-const REAL_PASSES: usize = 200;
-/// Squared lengths of cycles count as this at least.
-const MINIMUM_SQUARE: f64 = 1e-12;
-/// Multiples of a cycle stay below this, whatever a degenerate system says.
-const MAX_MULTIPLE: f64 = 1e6;
-/// A change must lower the energy by more than rounding errors would.
-const MINIMUM_GAIN: f64 = 1e-9;
 
 /// Re-chooses the circulations of the matchings, which no cone sees: moving cones changes how much a
 /// loop around a handle turns, and the best integers change with it. With the smoothest frames for them.
@@ -36,8 +27,7 @@ const MINIMUM_GAIN: f64 = 1e-9;
 /// which is its frame, takes part of it away; what remains is its divergence-free part, whose weighted square is made
 /// small over integer multiples of the turning edges' cycles (paths between boundaries are cycles too). With a guide the
 /// rotations are pulled to it, from where the frames of the start are.
-/// An integer least squares problem in 2g + b - 1 unknowns: rounding, then descent over single and pair
-/// moves. The cones stay.
+/// An integer least squares problem in 2g + b - 1 unknowns. The cones stay.
 ///
 /// # Errors
 /// When the face Laplacian cannot be factored.
@@ -286,70 +276,4 @@ fn dual_pattern(n_faces: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Patter
     let mut builder = PatternBuilder::new(n_faces);
     pairs.for_each(|pair| builder.add_clique(&pair));
     builder.build()
-}
-
-/// Integers that make `n' Q n - 2 b' n` small: rounding of the minimum or zero, whichever leads lower,
-/// then descent over single and pair moves.
-fn closest_integers(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
-    let starts = [round_real_minimum(q, b), vec![0; b.len()]];
-    let energy = |n: &[i32]| {
-        let value = |i: usize| {
-            let row: f64 = q[i].iter().zip(n).map(|(q, &n)| q * f64::from(n)).sum();
-            f64::from(n[i]) * (row - 2.0 * b[i])
-        };
-        (0..n.len()).map(value).sum::<f64>()
-    };
-    let [first, second] = starts.map(|start| descend(q, b, start));
-    if energy(&second) < energy(&first) { second } else { first }
-}
-
-/// Rounded solution of `Q n = b` (Gauss-Seidel: Q is well conditioned and small).
-fn round_real_minimum(q: &[Vec<f64>], b: &[f64]) -> Vec<i32> {
-    let mut x = vec![0.0; b.len()];
-    for _ in 0..REAL_PASSES {
-        for i in 0..b.len() {
-            let row: f64 = q[i].iter().zip(&x).map(|(q, x)| q * x).sum();
-            x[i] += (b[i] - row) / q[i][i].max(MINIMUM_SQUARE);
-        }
-    }
-    x.into_iter().map(|x| x.round().clamp(-MAX_MULTIPLE, MAX_MULTIPLE) as i32).collect()
-}
-
-fn descend(q: &[Vec<f64>], b: &[f64], mut n: Vec<i32>) -> Vec<i32> {
-    // Half the gradient.
-    let mut g: Vec<f64> = (0..b.len())
-        .map(|i| q[i].iter().zip(&n).map(|(q, &n)| q * f64::from(n)).sum::<f64>() - b[i])
-        .collect();
-    let step = |n: &mut [i32], g: &mut [f64], i: usize, by: i32| {
-        n[i] += by;
-        g.iter_mut().zip(q).for_each(|(g, row)| *g += f64::from(by) * row[i]);
-    };
-    for _ in 0..PASSES {
-        let mut improved = false;
-        for i in 0..b.len() {
-            let by = (-g[i] / q[i][i].max(MINIMUM_SQUARE)).round() as i32;
-            if by != 0 {
-                step(&mut n, &mut g, i, by);
-                improved = true;
-            }
-            for j in 0..i {
-                for (si, sj) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
-                    let change = 2.0 * (f64::from(si) * g[i] + f64::from(sj) * g[j])
-                        + q[i][i]
-                        + q[j][j]
-                        + 2.0 * f64::from(si * sj) * q[i][j];
-                    if change < -MINIMUM_GAIN {
-                        step(&mut n, &mut g, i, si);
-                        step(&mut n, &mut g, j, sj);
-                        improved = true;
-                        break;
-                    }
-                }
-            }
-        }
-        if !improved {
-            break;
-        }
-    }
-    n
 }

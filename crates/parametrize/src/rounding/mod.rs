@@ -2,6 +2,7 @@
 
 mod clean_up;
 mod holonomy;
+mod lattice;
 mod options;
 mod patch;
 mod progressive;

@@ -1,0 +1,158 @@
+//! Cones found on a coarser mesh.
+//!
+//! Where cones have to be, and how many are worth their price, is a matter of the shape at large. A mesh of a quarter of
+//! the triangles knows it as well, and all that looks for cones takes a quarter of the time there; its vertices are
+//! some of the mesh's own.
+
+use super::clean_up::{Cleaned, clean_up};
+use super::domain::Domain;
+use super::lay_out::lay_out_cleaned;
+use super::log::StageLog;
+use super::relaxed::RelaxedLayout;
+use super::start::repaired;
+use super::{MapOptions, MethodError, Start};
+use crate::cut::{FramedCut, MatchedCut, Unfolding};
+use crate::progress::{Stage, Watch, unless_cancelled};
+use crate::rounding::{Rounding, RoundingStats, RoundingStrategy, fix_holonomy};
+use num_complex::Complex64;
+use seamstress_mesh::coarse::{Coarsening, coarsen};
+use seamstress_mesh::features::EdgeSet;
+use seamstress_mesh::{Geometry, TriMesh, Vertex, VertexData};
+use std::f64::consts::FRAC_PI_4;
+
+/// The part of the triangles that a coarser mesh has, and how many it has at least and at most.
+const SHARE: f64 = 0.25;
+const FEWEST: usize = 4000;
+const MOST: usize = 40_000;
+/// A vertex with more curvature than this (radians) is nearer to a cone than to none: it stays.
+const SPIKE: f64 = FRAC_PI_4;
+/// The bias against cones, as a part of the one asked for: a coarser mesh has fewer places for cones as it is.
+const BIAS: f64 = 0.2;
+/// Smaller meshes are as coarse as need be.
+const LEAST: usize = 2 * FEWEST;
+
+/// A relaxed layout with the cones of a coarser mesh.
+pub(super) struct Scouted {
+    layout: RelaxedLayout,
+    /// Of the rounding of the coarser mesh.
+    stats: RoundingStats,
+    is_as_expected: bool,
+}
+
+/// What a mesh is laid out as: in a domain, after a rounding.
+pub(super) type LaidOut<'m> = (Domain<'m>, RoundingStats, RelaxedLayout);
+
+impl Scouted {
+    /// This layout if it is as good as was expected; else the better one of it and another way to lay the mesh out.
+    ///
+    /// # Errors
+    /// When the caller asks to stop on that way.
+    pub(super) fn or_better<'m>(
+        self,
+        domain: Domain<'m>,
+        other: impl FnOnce(Domain<'m>) -> Result<LaidOut<'m>, MethodError>,
+    ) -> Result<LaidOut<'m>, MethodError> {
+        if !self.is_as_expected {
+            match unless_cancelled(other(domain.clone()))? {
+                Ok(better) if better.2.excess() < self.layout.excess() => return Ok(better),
+                Ok(_) | Err(_) => {}
+            }
+        }
+        Ok((domain, self.stats, self.layout))
+    }
+}
+
+/// A layout with the cones of a coarser mesh; none if there is none, or where nothing is gained by it: where the mesh is
+/// small, where features or directions have to be known exactly, and where cones are given.
+///
+/// # Errors
+/// When the caller asks to stop.
+pub(super) fn scout(
+    domain: &Domain<'_>,
+    unfolding: &Unfolding,
+    start: &Start,
+    options: &MapOptions,
+    log: &mut StageLog,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Option<Scouted>, MethodError> {
+    if !is_worthwhile(domain, start, options) {
+        return Ok(None);
+    }
+    log.enter(Stage::Rounding, watch)?;
+    let found = find_cones(domain, options, log, watch)?;
+    let Some(Found { stats, index, cleaned }) = found else { return Ok(None) };
+    let (sectors, metric) = (&domain.sectors, &domain.metric);
+    let matched = MatchedCut::with_indices(sectors, metric, unfolding.clone(), &index);
+    let frames = vec![Complex64::ONE; domain.mesh().n_faces()];
+    let placed = Rounding { start: FramedCut { matched, frames }, stats };
+    let Ok(Rounding { start, stats }) = repaired(domain, placed) else { return Ok(None) };
+    watch.pulse()?;
+    let start = fix_holonomy(sectors, metric, start, None)?;
+    let cleaned = cleaned.on(start);
+    log.enter(Stage::Layout, watch)?;
+    let Some(layout) = lay_out_cleaned(domain, &cleaned, watch)? else { return Ok(None) };
+    log.count(layout.iterations);
+    Ok(Some(Scouted { stats, is_as_expected: cleaned.is_met_by(&layout), layout }))
+}
+
+fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bool {
+    domain.mesh().n_faces() >= LEAST
+        && !domain.any_aligned()
+        && domain.guide.is_none()
+        && domain.lengthening == 0.0
+        && start.leaves_cones_free()
+        && options.cone_price != Some(0.0)
+        && options.rounding.strategy == RoundingStrategy::ConeBias
+}
+
+/// The cones of a coarser mesh.
+struct Found {
+    /// Of its rounding.
+    stats: RoundingStats,
+    /// As indices of all vertices of the mesh itself, quarters.
+    index: VertexData<i32>,
+    /// Its matchings.
+    cleaned: Cleaned,
+}
+
+/// Looks for cones on a coarser mesh; none if there are no matchings there, or nothing to clean up.
+fn find_cones(
+    domain: &Domain<'_>,
+    options: &MapOptions,
+    log: &mut StageLog,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Option<Found>, MethodError> {
+    let mesh = domain.mesh();
+    let faces: Vec<[u32; 3]> = mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
+    let n_faces = (SHARE * faces.len() as f64) as usize;
+    let Geometry { positions, sizes, .. } = domain.geometry;
+    let curvature = domain.metric.curvature(mesh);
+    let is_spike = |&v: &Vertex| !mesh.is_boundary(v) && curvature[v].abs() > SPIKE;
+    let spikes: Vec<u32> = mesh.vertices().filter(is_spike).map(|v| v.0).collect();
+    let Coarsening { vertices, faces, .. } =
+        coarsen(positions, &faces, n_faces.clamp(FEWEST, MOST), &spikes);
+    watch.pulse()?;
+    let Ok(coarse) = TriMesh::from_faces(vertices.len(), &faces) else { return Ok(None) };
+    let positions: Vec<[f64; 3]> = of_vertices(&vertices, positions);
+    let sizes = sizes.map(|sizes| of_vertices(&vertices, sizes));
+    let geometry = Geometry { positions: &positions, sizes: sizes.as_deref(), directions: None };
+    let metric = geometry.metric(&coarse);
+    let mut options = *options;
+    options.rounding.cone_bias *= BIAS;
+    let options = &options;
+    let there = Domain::new(&coarse, geometry, &metric, EdgeSet::new(&coarse, []), options);
+    let rounded = Start::Mesh.rounding(&there, there.unfold(), options, watch);
+    let Ok(Ok(Rounding { start, stats })) = unless_cancelled(rounded)? else { return Ok(None) };
+    log.count(stats.layouts);
+    log.enter(Stage::CleanUp, watch)?;
+    let cleaned = clean_up(&there, &start, &Start::Mesh, options, watch)?;
+    let Some(cleaned) = cleaned else { return Ok(None) };
+    let found = cleaned.start.matched.sector_indices(&there.sectors, &there.metric);
+    let mut index = VertexData::filled(mesh.n_vertices(), 0);
+    vertices.iter().zip(found.iter()).for_each(|(&v, &k)| index[Vertex(v)] = k);
+    Ok(Some(Found { stats, index, cleaned }))
+}
+
+fn of_vertices<T: Copy>(vertices: &[u32], all: &[T]) -> Vec<T> {
+    vertices.iter().map(|&v| all[v as usize]).collect()
+}
