@@ -83,7 +83,44 @@ export const tests = {
     },
 };
 
+/** The same method with less memory: the largest size of its memory, the only one, becomes so many pages of 64 kB. */
+function withMemory(method, pages) {
+    const number = (at) => {
+        let [value, shift, next] = [0, 0, at];
+        do { value += (method[next] & 127) * 2 ** shift; shift += 7; } while (method[next++] & 128);
+        return { value, next };
+    };
+    const bytes = (value) => value < 128 ? [value] : [value % 128 + 128, ...bytes(Math.floor(value / 128))];
+    // After the magic number and the version: sections, each with its kind and length.
+    for (let at = 8; at < method.length;) {
+        const { value: length, next } = number(at + 1);
+        if (method[at] === 5) {
+            const { value: least } = number(next + 2);
+            const section = [1, 1, ...bytes(least), ...bytes(pages)];
+            return Buffer.concat([method.subarray(0, at), Buffer.from([5, section.length, ...section]), method.subarray(next + length)]);
+        }
+        at = next + length;
+    }
+    throw new Error('the method has no memory');
+}
+
 if (hasMethod) {
+    tests['a browser with little memory says what is amiss, and goes on'] = async (browser) => {
+        const { address, stop } = await host((path, content) => path.endsWith('.wasm') ? withMemory(content, 400) : content);
+        try {
+            const page = await open(browser, address, { serviceWorkers: 'block' });
+            await drop(page, 'large.obj', ball(400, 200));
+            await page.locator('.failure', { hasText: 'for want of memory' }).waitFor();
+            const text = await page.locator('.failure').textContent();
+            expect(text.includes('a smaller mesh') && text.includes('seamstress app'), text);
+            // The next task has a worker, and a memory, of its own.
+            await sample(page, 'Step');
+            return page;
+        } finally {
+            stop();
+        }
+    };
+
     tests['the app in a browser works without a network, and asks nobody'] = async (browser) => {
         const { address, stop } = await host();
         // What another page of the host keeps stays.

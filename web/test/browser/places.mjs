@@ -20,12 +20,12 @@ export async function program(...words) {
     return { address, id: child.pid, stop: () => child.kill('SIGINT'), ended: new Promise((resolve) => { child.on('exit', resolve); }) };
 }
 
-/** A host of files, in a folder of its own. */
-export async function host() {
+/** A host of files, in a folder of its own; what it sends can be changed. */
+export async function host(change = (path, content) => content) {
     const server = createServer((asked, response) => {
         const path = join(dist, new URL(asked.url, 'http://x').pathname.replace(/^\/some\/place\//, '').replace(/^$/, 'index.html'));
         if (!existsSync(path)) { response.writeHead(404).end(); return; }
-        response.writeHead(200, { 'content-type': TYPES[extname(path)] }).end(readFileSync(path));
+        response.writeHead(200, { 'content-type': TYPES[extname(path)] }).end(change(path, readFileSync(path)));
     });
     await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
     const stop = () => { server.close(); server.closeAllConnections(); };

@@ -208,3 +208,41 @@ fn answer_of(job: &Job, what: &[&str]) -> Answer {
     };
     found.unwrap_or_else(|| text(404, "there is no such result"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+    use std::net::TcpStream;
+
+    /// Asks whether the program is alive, as open pages do again and again.
+    fn ask(server: &Server) {
+        let host = &server.shared.hosts[0];
+        let mut stream = TcpStream::connect(host).unwrap();
+        let token = &server.shared.token;
+        write!(stream, "GET /{token}/alive HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n")
+            .unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    }
+
+    #[test]
+    fn it_ends_when_no_page_has_asked_for_long_enough() {
+        let server = Server::start(0, None).unwrap();
+        let (stop, idle) = (AtomicBool::new(false), Duration::from_millis(1500));
+        thread::scope(|scope| {
+            let serving = scope.spawn(|| server.serve(&stop, idle));
+            let begin = Instant::now();
+            while begin.elapsed() < 2 * idle {
+                ask(&server);
+                thread::sleep(LOOK_UP);
+            }
+            assert!(!serving.is_finished(), "a page still asks");
+            let last = Instant::now();
+            // Nobody sets `stop`: it ends by itself, or this waits for ever.
+            serving.join().unwrap();
+            assert!(last.elapsed() + LOOK_UP + LOOK_UP >= idle, "it ended too early");
+        });
+    }
+}
