@@ -36,7 +36,7 @@ pub struct Polished {
 /// Weight of the energy at first, against tau squared.
 const FIRST_WEIGHT: f64 = 1.0;
 /// Iterations before the weight changes: those in which the run leaves its start.
-const PATIENCE: usize = 4;
+const PATIENCE: usize = 3;
 /// The weight is multiplied by the rise to come as a part of the one allowed, squared where it is above: it has less time to
 /// come back; but by no more than these factors at a time.
 const CHANGE: (f64, f64) = (0.4, 2.5);
@@ -45,8 +45,8 @@ const SMALLEST_RISE: f64 = 0.05;
 /// The rise goes on as it went from the last layout, for two more; by no more than this factor for each.
 const LARGEST_TREND: f64 = 2.0;
 /// The part by which tau has to fall to be worth an iteration, and how many may go without.
-const WORTHWHILE: f64 = 2e-3;
-const IDLE: usize = 4;
+const WORTHWHILE: f64 = 0.01;
+const IDLE: usize = 2;
 /// Halvings of the line search that spends the rest: to a thousandth of the line.
 const HALVINGS: usize = 10;
 
