@@ -2,7 +2,7 @@
 
 use super::problem::LayoutProblem;
 use crate::chebyshev::accelerated;
-use crate::energy::{Jacobian, Triangle};
+use crate::energy::Triangle;
 use crate::progress::{Cancelled, Watch};
 use crate::quarter::direction;
 use num_complex::Complex64;
@@ -22,21 +22,6 @@ pub fn frame(triangle: &Triangle, z: &[Complex64]) -> Complex64 {
 /// Frames of all triangles.
 pub fn frames(triangles: &[Triangle], z: &[Complex64]) -> Vec<Complex64> {
     triangles.par_iter().with_min_len(4096).map(|t| frame(t, z)).collect()
-}
-
-/// Frames of the triangles that keep their orientation and turn by less than a right angle; the others keep theirs.
-fn nearest_frames(
-    triangles: &[Triangle],
-    start: &[Complex64],
-    now: &[Complex64],
-    z: &[Complex64],
-) -> Vec<Complex64> {
-    let nearest = |((t, start), &now): ((&Triangle, &Complex64), &Complex64)| {
-        let Jacobian { similar, anti } = t.jacobian(z);
-        let is_sound = similar.norm_sqr() > anti.norm_sqr() && (similar * start.conj()).re > 0.0;
-        if is_sound { direction(similar) } else { now }
-    };
-    triangles.par_iter().zip(start).zip(now).with_min_len(4096).map(nearest).collect()
 }
 
 /// Mean squared distance `|J - R|^2` of a layout's Jacobians to rotations, the energy of eq. (6).
@@ -102,32 +87,30 @@ impl<'p> Poisson<'p> {
 
     /// Local/global iterations (Liu et al. 2008) from frames, accelerated; returns the unknowns.
     ///
-    /// A triangle that a layout flips, or turns against its frame, keeps the frame. Its nearest rotation would be one from
-    /// which the vertices around it never find back: they end wound once too often.
-    ///
     /// # Errors
     /// [`Cancelled`].
     pub fn arap(
         &mut self,
-        start: Vec<Complex64>,
+        mut now: Vec<Complex64>,
         iterations: usize,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Vec<f64>, Cancelled> {
-        let mut y = self.solve_frames(&start);
-        let (mut now, mut before) = (start.clone(), start.clone());
+        let mut y = self.follow_frames(&now);
+        let mut before = now.clone();
         for step in accelerated().take(iterations) {
             watch.pulse()?;
             let z = self.problem.space().expand(&y);
-            let best = nearest_frames(self.problem.triangles(), &start, &now, &z);
-            for ((now, before), best) in now.iter_mut().zip(&mut before).zip(best) {
+            let turned = now.iter_mut().zip(&mut before).zip(frames(self.problem.triangles(), &z));
+            for ((now, before), best) in turned {
                 step.turn(now, before, best);
             }
-            y = self.solve_frames(&now);
+            y = self.follow_frames(&now);
         }
         Ok(y)
     }
 
-    fn solve_frames(&mut self, frames: &[Complex64]) -> Vec<f64> {
+    /// The unknowns of the layout nearest to these frames.
+    pub fn follow_frames(&mut self, frames: &[Complex64]) -> Vec<f64> {
         let targets: Vec<_> = frames.iter().map(|&r| [r, r * Complex64::I]).collect();
         self.solve(&targets)
     }

@@ -266,8 +266,22 @@ impl ExactLayout {
         iterations: usize,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Vec<f64>, SolveError> {
-        let turned = frames.iter().zip(self.gauge.iter()).map(|(&r, &k)| turn(r, k)).collect();
+        let turned = self.in_gauge(frames);
         Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations, watch)?)
+    }
+
+    /// The layout that follows given frames as well as the space allows: one linear system.
+    ///
+    /// # Errors
+    /// When it cannot be factored.
+    pub fn poisson(&mut self, frames: &[Complex64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let turned = self.in_gauge(frames);
+        Ok(Poisson::new(&mut self.problem)?.follow_frames(&turned))
+    }
+
+    /// Frames of the unfolding in the gauge of this cut.
+    fn in_gauge(&self, frames: &[Complex64]) -> Vec<Complex64> {
+        frames.iter().zip(self.gauge.iter()).map(|(&r, &k)| turn(r, k)).collect()
     }
 
     /// Images of the axes under a map given by its corners, turned into this gauge.

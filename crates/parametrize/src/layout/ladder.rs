@@ -33,10 +33,7 @@ pub enum LayoutEffort {
     Brief,
 }
 
-/// Local/global iterations of the rigid layout; later ones hardly change it.
-const RIGID_ITERATIONS: usize = 8;
-
-/// Lays out matched seams exactly: the isometric layout if there is no seam; else the rigid one from the frames given,
+/// Lays out matched seams exactly: the isometric layout if there is no seam; else the one that follows the frames given,
 /// untangled if triangles are flipped; else that of the barrier homotopy. The first without flips and wrong angles
 /// holds; if there is none, the defects of the last. (No flip alone is not enough: a vertex may be wound once too
 /// often.)
@@ -68,7 +65,7 @@ pub fn lay_out(
             return held(space, y, Route::Isometric, 0);
         }
     }
-    let mut y = space.arap(frames, RIGID_ITERATIONS, watch)?;
+    let mut y = space.poisson(frames)?;
     let mut defects = space.defects(sectors, &y);
     if defects.none() {
         return held(space, y, Route::Rigid, 0);
