@@ -109,16 +109,28 @@ impl QuantizationFailure {
     /// With the elements of the whole mesh in place of those of a piece of it.
     pub(crate) fn in_whole(self, piece: &Component) -> Self {
         match self {
-            Self::TooCoarse { count, pairs } => {
-                let whole = |pair: [u32; 2]| pair.map(|v| piece.vertices[Vertex(v)].0);
-                Self::TooCoarse { count, pairs: pairs.into_iter().map(whole).collect() }
-            }
-            Self::Blocked { face, reached } => {
-                Self::Blocked { face: piece.faces[face as usize].0, reached }
-            }
-            Self::Uncertified(violations) => Self::Uncertified(
-                violations.in_whole(|f| piece.faces[f as usize].0, |v| piece.vertices[Vertex(v)].0),
+            // The caller has named its faces.
+            refused @ Self::Refused(_) => refused,
+            other => other.renamed(
+                |v| piece.vertices[Vertex(v)].0,
+                |f| piece.faces[f as usize].0,
             ),
+        }
+    }
+
+    /// With other names of vertices and faces.
+    #[must_use]
+    pub fn renamed(self, vertex: impl Fn(u32) -> u32, face: impl Fn(u32) -> u32) -> Self {
+        match self {
+            Self::TooCoarse { count, pairs } => {
+                let renamed = |pair: [u32; 2]| pair.map(&vertex);
+                Self::TooCoarse { count, pairs: pairs.into_iter().map(renamed).collect() }
+            }
+            Self::Blocked { face: at, reached } => Self::Blocked { face: face(at), reached },
+            Self::Refused(Refusal { reason, faces }) => {
+                Self::Refused(Refusal { reason, faces: faces.into_iter().map(face).collect() })
+            }
+            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(face, vertex)),
             other => other,
         }
     }

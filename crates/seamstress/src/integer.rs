@@ -239,7 +239,7 @@ impl Surface {
                 let made =
                     surface.make_integer(&start, &options.to_quantize(), &mut |_| true, watcher);
                 let made =
-                    made.map_err(|cause| surface.no_integer_map(&cause, options.rounding))?;
+                    made.map_err(|cause| surface.no_integer_map(cause, options.rounding))?;
                 Ok((start, made))
             })
         });
@@ -336,7 +336,7 @@ impl Surface {
     }
 
     /// Why a map could not be rounded, with the elements that it names.
-    pub(crate) fn no_integer_map(&self, cause: &QuantizeError, rounding: GridRounding) -> Error {
+    pub(crate) fn no_integer_map(&self, cause: QuantizeError, rounding: GridRounding) -> Error {
         if matches!(cause, QuantizeError::Cancelled(_)) {
             return Error::cancelled();
         }
@@ -347,19 +347,20 @@ impl Surface {
                 .at_stage(Some(Stage::Quantization));
         };
         let failed: Vec<FailedPart> = failed
-            .iter()
+            .into_iter()
             .map(|part| {
-                self.failed_part(part.component, &self.failed_rounding(&part.cause, rounding))
+                self.failed_part(part.component, &self.failed_rounding(part.cause, rounding))
             })
             .collect();
         self.no_parts(ErrorKind::NoIntegerMap, "no certified integer-grid map", failed)
     }
 
     /// Why a component could not be rounded, with the elements that this names.
-    fn failed_rounding(&self, cause: &QuantizationFailure, rounding: GridRounding) -> Error {
+    fn failed_rounding(&self, cause: QuantizationFailure, rounding: GridRounding) -> Error {
+        let cause = cause.renamed(|v| self.vertex_named(v), |face| self.face_named(face));
         let mut elements = Elements::default();
         let (mut kind, mut hint) = (ErrorKind::NoIntegerMap, hint(rounding));
-        match cause {
+        match &cause {
             QuantizationFailure::TooCoarse { pairs, .. } => {
                 elements.vertices = pairs.as_flattened().to_vec();
                 elements.vertices.sort_unstable();
@@ -375,7 +376,7 @@ impl Surface {
         }
         Error::new(kind, cause.to_string())
             .at_stage(Some(Stage::Quantization))
-            .with_elements(self.in_input(&elements))
+            .with_elements(elements)
             .with_hint(hint)
     }
 

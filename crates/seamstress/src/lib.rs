@@ -77,6 +77,7 @@ pub mod lab;
 mod map;
 mod mesh_format;
 mod mirrored;
+mod named;
 mod optimize;
 mod options;
 mod packing;

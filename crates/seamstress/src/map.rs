@@ -19,8 +19,8 @@ use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_parametrize::atlas::Atlas;
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
-    self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Tolerance,
-    Violations, make_aligned_map,
+    self as method, AlignmentTolerance, ComponentStats, MapError, MethodError, ReleasedFeature,
+    Tolerance, Violations, make_aligned_map,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -143,7 +143,7 @@ impl SeamlessMap {
         self.scale = atlas.density / f64::from(texels);
         self.report.packing = Some(PackingReport::new(&atlas, options));
         self.map = method::SeamlessMap::certify(mesh, atlas.corner_uvs, &Tolerance::default())
-            .map_err(|violations| self.surface.no_map(&MapError::Uncertified(violations)))?;
+            .map_err(|violations| self.surface.no_map(MapError::Uncertified(violations)))?;
         self.corners = CornerUvs::new(self.surface.faces(), self.map.corner_uvs());
         self.report.seams = SeamReport::new(self.map.seams());
         self.report.certificate = self.map.certificate().clone();
@@ -410,7 +410,7 @@ impl Surface {
         let mut observe = |progress| watcher.observe(progress);
         let solution =
             make_aligned_map(self.mesh(), self.geometry(), &asked.edges, &settings, &mut observe)
-                .map_err(|cause| self.no_map(&cause))?;
+                .map_err(|cause| self.no_map(cause))?;
         let certify = || self.aligned(asked, &solution.map, &solution.released);
         let features = (!options.features.is_none()).then(certify).transpose()?;
         Ok(SeamlessMap::new(self, solution.map, features, options, solution.components))
@@ -429,16 +429,19 @@ impl Surface {
     }
 
     /// Why there is no map.
-    pub(crate) fn no_map(&self, cause: &MapError) -> Error {
+    pub(crate) fn no_map(&self, cause: MapError) -> Error {
         match cause {
             MapError::Cancelled(_) => Error::cancelled(),
-            MapError::Released { released } => self.no_strict_map(released),
+            MapError::Released { released } => self.no_strict_map(&released),
             MapError::Field(_) | MapError::Cones(_) => {
                 Error::new(ErrorKind::BadStart, cause.to_string())
             }
             MapError::Components(failed) => {
-                let failed = failed.iter().map(|part| {
-                    let error = Error::new(ErrorKind::NoMap, part.cause.to_string());
+                let failed = failed.into_iter().map(|part| {
+                    let named = |cause: MethodError| {
+                        cause.renamed(|v| self.vertex_named(v), |face| self.face_named(face))
+                    };
+                    let error = Error::new(ErrorKind::NoMap, named(part.cause).to_string());
                     self.failed_part(part.component, &error.with_hint(LIMIT))
                 });
                 self.no_parts(ErrorKind::NoMap, "no certified map", failed.collect())
@@ -448,7 +451,7 @@ impl Surface {
                 let error = Error::new(ErrorKind::NoMap, message).with_hint(LIMIT);
                 match cause {
                     MapError::Uncertified(violations) => {
-                        error.with_findings(self.findings(violations))
+                        error.with_findings(self.findings(&violations))
                     }
                     _ => error,
                 }
@@ -466,8 +469,13 @@ impl Surface {
             released_of.entry(component).or_default().push(*feature);
         }
         let error = |released: Vec<ReleasedFeature>| {
+            let named = |feature: ReleasedFeature| {
+                ReleasedFeature::new(self.edge_named(feature.vertices), feature.reason)
+            };
+            let mut released: Vec<_> = released.into_iter().map(named).collect();
+            released.dedup();
             let edges = released.iter().map(|feature| feature.vertices).collect();
-            let elements = self.in_input(&Elements { edges, ..Elements::default() });
+            let elements = Elements { edges, ..Elements::default() };
             Error::new(ErrorKind::DroppedFeatures, MapError::Released { released }.to_string())
                 .with_elements(elements)
                 .with_hint("without `features_strict` the map is made without them")

@@ -232,7 +232,7 @@ impl Surface {
                     .with_hint("give a seamless map to start from, as made by `parametrize`"),
                 cause if cause.is_infeasible() => Error::new(ErrorKind::NoMap, cause.to_string())
                     .with_hint("allow a larger `bound`, or start from another map"),
-                cause => self.no_map(&cause),
+                cause => self.no_map(cause),
             })?;
             let certify = || self.aligned(asked, &solution.map, &solution.released);
             let features = is_asked.then(certify).transpose()?;

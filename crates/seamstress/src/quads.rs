@@ -455,7 +455,7 @@ impl Surface {
     /// Why there are no quads that are a manifold.
     pub(crate) fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
         match cause {
-            ManifoldError::Quantize(cause) => self.no_integer_map(&cause, options.rounding),
+            ManifoldError::Quantize(cause) => self.no_integer_map(cause, options.rounding),
             ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),
             ManifoldError::NoManifold { faults, faces } => Error::no_manifold(&faults)
                 .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
@@ -492,13 +492,15 @@ impl Surface {
                 })
             }
             ExtractError::Folds { flipped, collapsed } => {
-                let faces = [flipped.as_slice(), collapsed].concat();
+                let [flipped, collapsed] = [flipped, collapsed]
+                    .map(|faces| faces.iter().map(|&face| self.face_named(face)).collect::<Vec<_>>());
                 let text = format!(
                     "the map folds{}{}",
-                    folded("flipped", flipped),
-                    folded("collapsed", collapsed)
+                    folded("flipped", &flipped),
+                    folded("collapsed", &collapsed)
                 );
-                let elements = self.in_input(&Elements { faces, ..Elements::default() });
+                let faces = [flipped, collapsed].concat();
+                let elements = Elements { faces, ..Elements::default() };
                 error(text).with_elements(elements).with_hint("`best_effort` extracts what it can")
             }
             other => error(other.to_string()),

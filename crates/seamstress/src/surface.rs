@@ -2,7 +2,7 @@
 
 use crate::context::Context;
 use crate::error::{Error, ErrorKind, Stage};
-use crate::finding::{Elements, Finding};
+use crate::finding::Finding;
 use crate::inspection::{Inspection, Parts, SurfaceOptions};
 use crate::report::SurfaceReport;
 use seamstress_mesh::attributes::Attributes;
@@ -56,6 +56,8 @@ struct Inner {
     report: SurfaceReport,
     mesh: TriMesh,
     metric: Metric,
+    /// Of another mesh of a surface: that surface, and the face of it that each face lies in.
+    remesh_of: Option<(Surface, Vec<u32>)>,
 }
 
 impl Inspection {
@@ -71,7 +73,7 @@ impl Inspection {
             Error::new(ErrorKind::NotASurface, cause.to_string()).of(parts.input.as_deref())
         })?;
         let metric = Metric::from_positions(&mesh, &soup.positions);
-        let inner = Arc::new(Inner { parts, report, mesh, metric });
+        let inner = Arc::new(Inner { parts, report, mesh, metric, remesh_of: None });
         let context = Context::default();
         Ok(Surface { inner, attributes, sizes: None, directions: None, context })
     }
@@ -198,12 +200,15 @@ impl Surface {
         let parts = Parts {
             input: of_input.input.clone(),
             n_input_vertices: of_input.n_input_vertices,
-            vertex_origin: vertices.iter().map(|&v| self.input_vertex(v)).collect(),
+            // Vertices that are none of the input's come last.
+            vertex_origin: Some(vertices.iter().map_while(|&v| self.input_vertex(v)).collect()),
             face_origin: faces.iter().map(|&face| of_input.face_origin[face as usize]).collect(),
             soup,
             ..Parts::default()
         };
-        let inner = Arc::new(Inner { parts, report: self.inner.report.clone(), mesh, metric });
+        let report = self.inner.report.clone();
+        let remesh_of = Some((self.clone(), faces.to_vec()));
+        let inner = Arc::new(Inner { parts, report, mesh, metric, remesh_of });
         let (attributes, context) = (Arc::default(), self.context.clone());
         Ok(Self { inner, attributes, sizes: None, directions: None, context })
     }
@@ -257,18 +262,9 @@ impl Surface {
         &self.context
     }
 
-    /// Elements of this surface as those of its input.
-    pub(crate) fn in_input(&self, elements: &Elements) -> Elements {
-        let vertex = |&v: &u32| self.input_vertex(v);
-        let edge = |&[a, b]: &[u32; 2]| Some([vertex(&a)?, vertex(&b)?]);
-        let mut faces: Vec<u32> =
-            elements.faces.iter().filter_map(|&face| self.input_face(face)).collect();
-        faces.dedup();
-        Elements {
-            vertices: elements.vertices.iter().filter_map(vertex).collect(),
-            edges: elements.edges.iter().filter_map(edge).collect(),
-            faces,
-        }
+    /// Of another mesh of a surface: that surface, and the face of it that each face lies in.
+    pub(crate) fn remesh_of(&self) -> Option<(&Self, &[u32])> {
+        self.inner.remesh_of.as_ref().map(|(surface, faces)| (surface, faces.as_slice()))
     }
 
     /// Violations as findings, with elements of the input.

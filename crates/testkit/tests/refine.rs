@@ -5,7 +5,7 @@ use seamstress_mesh::features::{EdgeSet, sharp_edges};
 use seamstress_mesh::refine::{Refinement, refine};
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Metric, TriMesh, Vertex};
-use seamstress_testkit::{extruded, icosphere, parts, pyramid, subdivide};
+use seamstress_testkit::{extruded, icosphere, parts, pyramid, subdivide, torus};
 use std::collections::BTreeSet;
 
 /// A mesh and its edges of 40 degrees and more, with the boundary.
@@ -116,4 +116,23 @@ fn a_sheet_of_two_sides_has_a_finer_mesh() {
     let mut sheet = seamstress_testkit::tetrahedron();
     sheet.positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.3, 0.0]];
     assert!(check("sheet", &sheet, 0.1).is_some());
+}
+
+#[test]
+fn what_is_narrow_everywhere_gets_no_more_points_than_others() {
+    // A torus as long as a million of its widths, all of whose edges are features.
+    let mut torus = torus(12, 8, 2.0, 0.7);
+    torus.positions.iter_mut().for_each(|p| p[0] *= 1e6);
+    let (mesh, _) = read(&torus);
+    let all = EdgeSet::new(&mesh, mesh.edges());
+    for size in [1e-3, 1.0, 1e3] {
+        let finer = refine(&mesh, &torus.positions, &all, size).unwrap();
+        assert!(finer.positions.len() < 50_000, "{size}: {} vertices", finer.positions.len());
+    }
+    // A triangle without area beside one with some.
+    let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    let soup = TriangleSoup { positions, faces: vec![[0, 2, 3], [0, 1, 2]] };
+    let (mesh, edges) = read(&soup);
+    let finer = refine(&mesh, &soup.positions, &edges, 0.5).unwrap();
+    assert!(finer.positions.len() < 50, "{} vertices", finer.positions.len());
 }

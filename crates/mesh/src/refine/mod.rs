@@ -44,8 +44,11 @@ const NEEDLE: f64 = 0.087;
 const FEWEST_PIECES: usize = 2;
 /// Edges of a part are at most as long as this multiple of the side of a square of its area, so that it gets points inside.
 const PART: f64 = 1.0;
-/// Pieces of an edge at most, whatever its length.
-const MOST_PIECES: f64 = 1000.0;
+/// Pieces of an edge at most that this asks for: a needle would ask for any number.
+const MOST_PIECES: f64 = 32.0;
+/// Points added at most, on borders and then inside, on a mesh of fewer vertices: what is long and narrow everywhere gets
+/// longer edges.
+const MOST_POINTS: usize = 20_000;
 
 /// A finer mesh of the same surface where features lack room or triangles have no area, with edges of about a length in
 /// mesh units there. None if all is well as it is.
@@ -165,20 +168,37 @@ impl<'a> Source<'a> {
         refined
     }
 
+    /// Points that may be added in all.
+    fn most_points(&self) -> usize {
+        MOST_POINTS.max(self.mesh.n_vertices())
+    }
+
+    /// How many pieces the border of parts that need room is to have, of an edge that is on it.
+    fn wanted_pieces(&self, h: Halfedge, size: f64) -> Option<f64> {
+        let parts = [Some(h), self.mesh.twin(h)].into_iter().flatten();
+        let parts = parts.map(|h| self.parts.of_face[h.face()]);
+        let in_need = parts.filter(|&part| self.needs_room[part as usize] && self.is_border(h));
+        let [a, b] = [self.mesh.origin(h), self.mesh.tip(h)].map(|v| self.positions[v.at()]);
+        let length = norm(sub(b, a));
+        let wanted = |part| match self.size(part, f64::INFINITY) {
+            0.0 => 0.0,
+            size => (length / size).min(MOST_PIECES),
+        };
+        in_need.map(wanted).reduce(f64::max).map(|n| n.max(length / size))
+    }
+
     /// Points on the borders of parts that need room, for each half-edge from its origin on.
     fn split_borders(&self, size: f64, positions: &mut Vec<[f64; 3]>) -> HalfedgeData<Vec<u32>> {
         let mut pieces = HalfedgeData::filled(self.mesh.n_halfedges(), Vec::new());
-        for h in self.mesh.edges() {
+        let edges = self.mesh.edges().filter_map(|h| Some((h, self.wanted_pieces(h, size)?)));
+        let edges: Vec<(Halfedge, f64)> = edges.collect();
+        let all: f64 = edges.iter().map(|(_, n)| n).sum();
+        let share = (self.most_points() as f64 / all).min(1.0);
+        for (h, wanted) in edges {
             let twin = self.mesh.twin(h);
-            let parts = [Some(h), twin].into_iter().flatten().map(|h| self.parts.of_face[h.face()]);
-            let in_need = parts.filter(|&part| self.needs_room[part as usize]);
-            let sizes = in_need.map(|part| self.size(part, size));
-            let Some(size) = sizes.reduce(f64::min).filter(|_| self.is_border(h)) else { continue };
-            let ends = [self.mesh.origin(h), self.mesh.tip(h)];
-            let [a, b] = ends.map(|v| self.positions[v.at()]);
-            let length = norm(sub(b, a));
+            let [a, b] = [self.mesh.origin(h), self.mesh.tip(h)].map(|v| self.positions[v.at()]);
             let fewest = if self.joins_curves(h) { FEWEST_PIECES } else { 1 };
-            let n = ((length / size).ceil().min(MOST_PIECES) as usize).max(fewest);
+            let n = ((share * wanted).ceil() as usize).max(fewest);
             let first = positions.len() as u32;
             for k in 1..n {
                 let t = k as f64 / n as f64;

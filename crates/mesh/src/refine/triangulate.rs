@@ -155,14 +155,15 @@ impl Plane {
             delaunay.insert(Site { at: center, vertex: None }).ok()?;
             let size = size / self.extent;
             let largest = (AREA_OF_SQUARE * size * size).min(area / FEWEST_TRIANGLES);
+            let wanted = MOST_ADDED * handles.len() + (4.0 * area / largest).min(1e6) as usize;
+            let added = positions.len() - part.source.positions.len();
+            let left = part.source.most_points().saturating_sub(added);
             let parameters = RefinementParameters::new()
                 .exclude_outer_faces(true)
                 .keep_constraint_edges()
                 .with_angle_limit(AngleLimit::from_deg(ANGLE))
                 .with_max_allowed_area(largest)
-                .with_max_additional_vertices(
-                    MOST_ADDED * handles.len() + (4.0 * area / largest).min(1e6) as usize,
-                );
+                .with_max_additional_vertices(wanted.min(left));
             delaunay.refine(parameters);
         }
         // Inside is what lies on the left of the border, and what hangs together with it.

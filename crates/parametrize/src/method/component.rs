@@ -2,13 +2,14 @@
 
 use super::certify::ComponentMap;
 use super::domain::Domain;
-use super::{MapOptions, MethodError, Start, parametrize};
+use super::{MapOptions, MethodError, Purpose, Start, parametrize};
 use crate::progress::{Watch, unless_cancelled};
+use crate::rounding::RoundingOptions;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Geometry};
 
-/// Maps one component along its features and a guide; where that fails, or features are lost, without the guide, then with
-/// nothing aligned, and then in a metric without thin triangles.
+/// Maps one component along its features. For quads, where features are lost, once more with cones at no price, since
+/// coarse patches may need more of them; the map that follows more features is taken.
 ///
 /// # Errors
 /// [`MethodError`] of the last trial.
@@ -26,6 +27,32 @@ pub(super) fn map_component(
     let metric = geometry.metric(mesh);
     let features = features.restrict(piece);
     let mut domain = Domain::new(mesh, geometry, &metric, features, options);
+    let map = map_domain(domain.clone(), start, options, watch)?;
+    let is_texture = options.purpose == Purpose::Texture;
+    if is_texture || map.released.len() == domain.released.len() {
+        return Ok(map);
+    }
+    let rounding = RoundingOptions { cone_bias: 0.0, ..options.rounding };
+    let options = MapOptions { rounding, ..*options };
+    domain.guide = None;
+    let other = map_domain(domain, start, &options, watch);
+    match unless_cancelled(other)? {
+        Ok(other) if other.released.len() < map.released.len() => Ok(other),
+        _ => Ok(map),
+    }
+}
+
+/// Maps a domain along its features and its guide; where that fails, or features are lost, without the guide, then with
+/// nothing aligned, and then in a metric without thin triangles.
+///
+/// # Errors
+/// [`MethodError`] of the last trial.
+fn map_domain(
+    mut domain: Domain<'_>,
+    start: &Start,
+    options: &MapOptions,
+    watch: &mut Watch<'_, '_>,
+) -> Result<ComponentMap, MethodError> {
     loop {
         match unless_cancelled(parametrize(domain.clone(), start, options, watch))? {
             // Features come before directions.

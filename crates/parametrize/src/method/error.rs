@@ -10,7 +10,8 @@ use crate::map::Violations;
 use crate::progress::{Cancelled, MaybeCancelled, SolveError};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::components::{self, FailedComponent};
-use seamstress_mesh::{Component, Vertex};
+use seamstress_mesh::{Component, Face, Vertex};
+use std::collections::BTreeSet;
 
 /// Why a connected mesh has no map.
 #[derive(Debug, thiserror::Error)]
@@ -65,20 +66,26 @@ impl MaybeCancelled for MethodError {
 impl MethodError {
     /// With the elements it names in the ids of the whole mesh.
     pub(super) fn in_whole(self, piece: &Component) -> Self {
-        let whole = |v: u32| piece.vertices[Vertex(v)].0;
+        self.renamed(|v| piece.vertices[Vertex(v)].0, |f| piece.faces[f as usize].0)
+    }
+
+    /// With other names of vertices and faces, each once.
+    #[must_use]
+    pub fn renamed(self, vertex: impl Fn(u32) -> u32, face: impl Fn(u32) -> u32) -> Self {
         match self {
-            Self::Defective(Defects { flips, wrong_angles }) => Self::Defective(Defects {
-                flips: flips.iter().map(|f| piece.faces[f.at()]).collect(),
-                wrong_angles: wrong_angles.iter().map(|&v| piece.vertices[v]).collect(),
-            }),
-            Self::Uncertified(violations) => {
-                Self::Uncertified(violations.in_whole(|f| piece.faces[f as usize].0, whole))
+            Self::Defective(Defects { flips, wrong_angles }) => {
+                let flips: BTreeSet<Face> = flips.iter().map(|f| Face(face(f.0))).collect();
+                let wrong: BTreeSet<Vertex> =
+                    wrong_angles.iter().map(|v| Vertex(vertex(v.0))).collect();
+                let (flips, wrong_angles) = (Vec::from_iter(flips), Vec::from_iter(wrong));
+                Self::Defective(Defects { flips, wrong_angles })
             }
-            Self::Cones(PrescriptionError::NoTaker { vertex }) => {
-                Self::Cones(PrescriptionError::NoTaker { vertex: whole(vertex) })
+            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(face, vertex)),
+            Self::Cones(PrescriptionError::NoTaker { vertex: at }) => {
+                Self::Cones(PrescriptionError::NoTaker { vertex: vertex(at) })
             }
             Self::Inconsistent(ConsistencyError::Infeasible { vertices }) => {
-                let vertices = vertices.into_iter().map(whole).collect();
+                let vertices = vertices.into_iter().map(vertex).collect();
                 Self::Inconsistent(ConsistencyError::Infeasible { vertices })
             }
             other => other,

@@ -122,7 +122,7 @@ impl Surface {
         };
         let mut observe = |progress| watcher.observe(progress);
         let made = make_field_map(self.mesh(), self.positions(), &settings, &mut observe)
-            .map_err(|cause| self.no_map(&cause))?;
+            .map_err(|cause| self.no_map(cause))?;
         let layout = match made.map {
             Ok(map) => {
                 let map = SeamlessMap::new(self, map, None, &options.map, made.components);

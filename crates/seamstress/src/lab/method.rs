@@ -34,7 +34,7 @@ impl Surface {
             let mut observe = |progress| watcher.observe(progress);
             let made =
                 make_map_from(sized.mesh(), sized.geometry(), &start, &settings, &mut observe);
-            let solution = made.map_err(|cause| self.no_map(&cause))?;
+            let solution = made.map_err(|cause| self.no_map(cause))?;
             let map =
                 SeamlessMap::new(&sized, solution.map, None, &options.map, solution.components);
             Ok(LaidOut::Certified(Box::new(map.packed(&options.map)?)))
