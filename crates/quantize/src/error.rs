@@ -111,10 +111,7 @@ impl QuantizationFailure {
         match self {
             // The caller has named its faces.
             refused @ Self::Refused(_) => refused,
-            other => other.renamed(
-                |v| piece.vertices[Vertex(v)].0,
-                |f| piece.faces[f as usize].0,
-            ),
+            other => other.renamed(|v| piece.vertices[Vertex(v)].0, |f| piece.faces[f as usize].0),
         }
     }
 

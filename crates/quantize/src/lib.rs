@@ -40,6 +40,7 @@ mod search;
 mod snap;
 mod space;
 mod stats;
+mod stretches;
 mod walk;
 
 pub use certificate::IntegerGridMap;

@@ -8,6 +8,8 @@ use crate::layout::SeamlessLayout;
 use crate::rays::lines_to_isolines;
 use crate::rounding::{Constraint, ReducedEnergy, RoundingProblem, Rule};
 use crate::scene::{Connection, distinct};
+use crate::stretches::{Stretch, stretches};
+use seamstress_mesh::Metric;
 
 /// Lines shorter than this in the seamless map are constrained, grid units.
 const CONSTRAINED_LENGTH: f64 = 2.5;
@@ -19,18 +21,25 @@ pub(crate) struct Obstacles {
     near: (f64, Vec<Connection>),
     /// Faces of the mesh whose corners are grid points.
     faces: Vec<PointFace>,
+    /// Curves that should have a number of cells.
+    stretches: Vec<Stretch>,
     /// Infeasibility cuts.
     cuts: Vec<(FarkasCut, Rule)>,
 }
+
+/// Between whole numbers.
+const HALF: f64 = 0.5;
 
 impl Obstacles {
     /// Nothing but what is known of a layout before any rounding.
     ///
     /// # Errors
     /// [`Overflow`].
-    pub(crate) fn new(layout: &SeamlessLayout<'_>) -> Result<Self, Overflow> {
+    pub(crate) fn new(layout: &SeamlessLayout<'_>, metric: &Metric) -> Result<Self, Overflow> {
         let z = layout.z();
-        Ok(Self { faces: point_faces(&layout.scene(&z))?, ..Self::default() })
+        let scene = layout.scene(&z);
+        let stretches = stretches(&scene, metric, layout.unit, &layout.coordinates)?;
+        Ok(Self { faces: point_faces(&scene)?, stretches, ..Self::default() })
     }
 
     /// Adds cuts with the conditions that they impose.
@@ -69,6 +78,14 @@ impl Obstacles {
         for face in self.faces.iter().filter(|face| face.extent < radius) {
             let sides = face.sides.iter().map(|side| Constraint::new(side, from, h));
             problem.add(sides, Rule::Oriented);
+        }
+        for stretch in &self.stretches {
+            let cells = stretch.cells(h);
+            // Of others rounding leaves enough.
+            if cells > 1.0 && cells + 1.0 > stretch.displacement / h {
+                let rule = Rule::Beyond { forces: [1.0].into(), bound: cells - HALF };
+                problem.add([Constraint::free(stretch.row.clone())].into_iter(), rule);
+            }
         }
         for (cut, rule) in &self.cuts {
             let parts = cut.differences.iter().cloned().map(Constraint::free);

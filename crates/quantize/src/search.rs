@@ -148,7 +148,7 @@ impl<'a> ComponentSearch<'a> {
             }
             RoundingMethod::Greedy => layout.reduced_dirichlet(watch)?,
         };
-        let obstacles = Obstacles::new(&layout)?;
+        let obstacles = Obstacles::new(&layout, metric)?;
         let stats = QuantizationStats {
             faces: piece.mesh.n_faces(),
             integers: layout.coordinates.len(),
@@ -307,7 +307,8 @@ impl<'a> ComponentSearch<'a> {
             self.stats.repairs += usize::from(rounding.is_repaired);
             self.stats.constraints = problem.constraints.len();
             self.stats.seconds_rounding += clock.elapsed().as_secs_f64();
-            // What a cut asks for beyond what has failed is a guess: integers that miss a cut alone are worth a try.
+            // What a cut asks for beyond what has failed is a guess, and cells for round curves a wish: integers that miss such
+            // alone are worth a try.
             if rounding.violated.count > rounding.violated.cuts {
                 // Cuts of other grids may contradict each other here.
                 let failure = too_coarse(&problem, &rounding);

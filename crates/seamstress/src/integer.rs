@@ -238,8 +238,7 @@ impl Surface {
                 let start = SeamlessStart { map, features, tolerance };
                 let made =
                     surface.make_integer(&start, &options.to_quantize(), &mut |_| true, watcher);
-                let made =
-                    made.map_err(|cause| surface.no_integer_map(cause, options.rounding))?;
+                let made = made.map_err(|cause| surface.no_integer_map(cause, options.rounding))?;
                 Ok((start, made))
             })
         });

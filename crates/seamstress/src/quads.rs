@@ -492,8 +492,9 @@ impl Surface {
                 })
             }
             ExtractError::Folds { flipped, collapsed } => {
-                let [flipped, collapsed] = [flipped, collapsed]
-                    .map(|faces| faces.iter().map(|&face| self.face_named(face)).collect::<Vec<_>>());
+                let [flipped, collapsed] = [flipped, collapsed].map(|faces| {
+                    faces.iter().map(|&face| self.face_named(face)).collect::<Vec<_>>()
+                });
                 let text = format!(
                     "the map folds{}{}",
                     folded("flipped", &flipped),

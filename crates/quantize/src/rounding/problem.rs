@@ -150,7 +150,7 @@ impl Constraint {
 pub enum Rule {
     /// Two sides of a triangle of the mesh, which stays counter-clockwise.
     Oriented,
-    /// An infeasibility cut: the sum of force times real part is more than a bound.
+    /// An infeasibility cut, or a wish: the sum of force times real part is more than a bound.
     Beyond {
         /// One for each member.
         forces: Arc<[f64]>,
@@ -211,7 +211,7 @@ pub struct RoundingProblem<'a> {
 pub struct Violations {
     /// How many constraints, single and joint ones.
     pub count: usize,
-    /// How many of them are infeasibility cuts.
+    /// How many of them are infeasibility cuts and wishes.
     pub cuts: usize,
     /// The displacements that have a part in it, by number.
     pub involved: Vec<usize>,
