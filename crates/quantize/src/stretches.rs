@@ -62,7 +62,7 @@ pub(crate) fn stretches(
             if walk.is_seen[h] || (from_points && !is_point(h)) {
                 continue;
             }
-            let Some((sight, length, turn)) = walk.from(h) else { continue };
+            let Some((sight, length, turn)) = walk.stretch_at(h) else { continue };
             let line = scene.line(&sight)?;
             let along = |row: &Row| apply(row, coordinates);
             let row =
@@ -90,7 +90,7 @@ struct Walk<'s> {
 impl Walk<'_> {
     /// The stretch that begins with a half-edge: what its displacement is seen from, its length, and its turn. None if
     /// it comes to an edge where the surface ends, or to where a curve does.
-    fn from(&mut self, start: Halfedge) -> Option<(Sight, f64, f64)> {
+    fn stretch_at(&mut self, start: Halfedge) -> Option<(Sight, f64, f64)> {
         let mesh = self.scene.mesh;
         let (mut h, mut crossed, mut length, mut turn) = (start, Vec::new(), 0.0, 0.0);
         loop {

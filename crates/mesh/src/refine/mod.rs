@@ -45,7 +45,7 @@ const FEWEST_PIECES: usize = 2;
 /// Edges of a part are at most as long as this multiple of the side of a square of its area, so that it gets points inside.
 const PART: f64 = 1.0;
 /// Pieces of an edge at most that this asks for: a needle would ask for any number.
-const MOST_PIECES: f64 = 32.0;
+const MOST_PIECES: f64 = 1000.0;
 /// Points added at most, on borders and then inside, on a mesh of fewer vertices: what is long and narrow everywhere gets
 /// longer edges.
 const MOST_POINTS: usize = 20_000;
