@@ -14,7 +14,7 @@ Exit codes:
   2  wrong usage: unknown option, or an output that cannot be written
   3  no certified map could be made, or its quads are no manifold; nothing is written, or with
      `--partial` what could be made of the other connected parts
-  4  stopped by the time limit or by Ctrl-C; nothing is written";
+  4  stopped by the time limit, the memory limit or Ctrl-C; nothing is written";
 
 /// The help's end: examples and exit codes.
 pub(crate) fn after_help(examples: &str) -> String {
@@ -27,6 +27,11 @@ pub(crate) struct RunArgs {
     /// Give up when the work is not done after this many seconds [default: no limit]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<Duration>,
+
+    /// Refuse work that is expected to take more memory than this, before it starts: bytes, or a number with kB, MB, GB,
+    /// KiB, MiB or GiB [default: no limit]
+    #[arg(long, value_name = "SIZE", value_parser = bytes, hide_short_help = true)]
+    pub(crate) memory_limit: Option<u64>,
 
     /// Number of threads; the result does not depend on it [default: all cores]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
@@ -154,6 +159,26 @@ fn seconds(text: &str) -> Result<Duration, String> {
     })
 }
 
+/// Bytes in a size such as `800MB` or `1.5 GiB`.
+fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 8] = [
+        ("", 1.0),
+        ("b", 1.0),
+        ("kb", 1e3),
+        ("mb", 1e6),
+        ("gb", 1e9),
+        ("kib", 1024.0),
+        ("mib", 1048576.0),
+        ("gib", 1073741824.0),
+    ];
+    let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let unit = UNITS.iter().find(|(name, _)| unit.eq_ignore_ascii_case(name));
+    let number = number.trim().parse().ok().filter(|&x: &f64| x.is_finite() && x > 0.0);
+    let bytes = number.zip(unit).map(|(number, (_, unit))| number * unit);
+    bytes.map(|bytes| bytes as u64).ok_or_else(|| "expected a size such as 800MB or 1.5GiB".into())
+}
+
 /// The most threads.
 const MOST_THREADS: u32 = 1024;
 
@@ -167,6 +192,24 @@ fn threads(text: &str) -> Result<u32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_have_units() {
+        for (text, expected) in [
+            ("4000000", 4_000_000),
+            ("800MB", 800_000_000),
+            ("1.5 GiB", 1_610_612_736),
+            ("2gb", 2_000_000_000),
+            ("64k", 0),
+            ("0", 0),
+            ("-1GB", 0),
+            ("much", 0),
+            ("infGB", 0),
+            ("1e3b", 0),
+        ] {
+            assert_eq!(bytes(text).ok(), Some(expected).filter(|&bytes| bytes > 0), "{text}");
+        }
+    }
 
     #[test]
     fn seconds_are_positive_and_finite() {

@@ -142,9 +142,12 @@ pub(crate) fn run<C: Command>(command: &C) -> Result<Status, Failure> {
     let has_output = plan.as_ref().is_ok_and(Plan::writes_to_standard_output);
     let ended = plan.and_then(|plan| work(command, &job, &plan));
     if let (Err(failure), true) = (&ended, command.run_args().json && !has_output) {
-        let version = seamstress::VERSION;
-        let report =
-            json!({ "seamstress": version, "command": C::NAME, "error": failure.report() });
+        let report = json!({
+            "seamstress": seamstress::VERSION,
+            "command": C::NAME,
+            "error": failure.report(),
+            "cost": job.cost(),
+        });
         print(&serde_json::to_string_pretty(&report).unwrap_or_default())?;
     }
     ended
@@ -211,6 +214,7 @@ fn report_of<C: Command>(command: &C, product: &C::Product, plan: &Plan, cost: C
     value["command"] = C::NAME.into();
     value["run"] = json!({
         "time_limit": run.time_limit.map(|limit| limit.as_secs_f64()),
+        "memory_limit": run.memory_limit,
         "threads": run.threads,
     });
     value["files"] = json!(plan.targets);

@@ -8,7 +8,7 @@ use seamstress::{CancelToken, Context};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -26,6 +26,7 @@ pub(crate) struct Job {
     run: RunArgs,
     cancel: CancelToken,
     interrupts: Arc<AtomicUsize>,
+    expected_memory: Arc<AtomicU64>,
     bars: Bars,
 }
 
@@ -37,6 +38,9 @@ pub(crate) struct Cost {
     pub(crate) cpu_seconds: Option<f64>,
     /// Where the system tells.
     pub(crate) peak_memory_bytes: Option<u64>,
+    /// The estimate before the work began; none for what takes little.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) expected_memory_bytes: Option<u64>,
     pub(crate) threads: usize,
 }
 
@@ -50,21 +54,26 @@ impl Job {
             token.cancel();
             count.fetch_add(1, Ordering::Relaxed);
         });
-        Self { start: Instant::now(), run, cancel, interrupts, bars: Bars::new(!run.quiet) }
+        let (expected_memory, bars) = (Arc::default(), Bars::new(!run.quiet));
+        Self { start: Instant::now(), run, cancel, interrupts, expected_memory, bars }
     }
 
     /// The context of the work.
     pub(crate) fn context(&self) -> Context {
-        let bars = self.bars.clone();
+        let (bars, expected) = (self.bars.clone(), Arc::clone(&self.expected_memory));
         let mut context = Context::new()
             .cancel_token(&self.cancel)
             .threads(self.run.threads.unwrap_or_default() as usize)
             .observer(move |progress| {
+                expected.store(progress.expected_memory, Ordering::Relaxed);
                 bars.show(progress);
                 ControlFlow::Continue(())
             });
         if let Some(limit) = self.run.time_limit {
             context = context.time_limit(limit);
+        }
+        if let Some(limit) = self.run.memory_limit {
+            context = context.memory_limit(limit);
         }
         context
     }
@@ -135,6 +144,8 @@ impl Job {
             wall_seconds: self.start.elapsed().as_secs_f64(),
             cpu_seconds: system::cpu_seconds(),
             peak_memory_bytes: system::peak_memory(),
+            expected_memory_bytes: Some(self.expected_memory.load(Ordering::Relaxed))
+                .filter(|&bytes| bytes > 0),
             threads: self.run.threads.map_or_else(all, |threads| threads as usize),
         }
     }

@@ -33,6 +33,11 @@ impl Bars {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         let (component, stage) = (progress.component, progress.stage);
         let is_current = |&(c, s, _): &(usize, Stage, ProgressBar)| (c, s) == (component, stage);
+        if current.is_none() {
+            let megabytes = progress.expected_memory as f64 / 1e6;
+            // A terminal that cannot be written to is no reason to fail.
+            let _ = self.all.println(format!("takes about {megabytes:.0} MB of memory"));
+        }
         if !current.as_ref().is_some_and(is_current) {
             // The bars of many components would fill the screen.
             match current.take() {

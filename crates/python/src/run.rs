@@ -20,9 +20,9 @@ const STACK: usize = 8 << 20;
 /// The longest time limit: a year.
 const LONGEST: f64 = 365.0 * 24.0 * 60.0 * 60.0;
 
-/// How a call is run: threads, seconds, and a function of stage and share that is told of progress.
+/// How a call is run: threads, seconds, bytes, and a function of stage and share that is told of progress.
 #[derive(FromPyObject)]
-pub(crate) struct Run(Option<usize>, Option<f64>, Option<Py<PyAny>>);
+pub(crate) struct Run(Option<usize>, Option<f64>, Option<u64>, Option<Py<PyAny>>);
 
 impl Run {
     /// Does work on a thread pool that ends with it: one that stays would hang in forks of this process.
@@ -34,7 +34,7 @@ impl Run {
         py: Python<'_>,
         work: impl FnOnce(Context) -> Result<T, Error> + Send + 'static,
     ) -> PyResult<T> {
-        let Self(threads, seconds, progress) = self;
+        let Self(threads, seconds, bytes, progress) = self;
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.unwrap_or_else(cores))
@@ -55,6 +55,7 @@ impl Run {
             cause: None,
         };
         let context = waiting.context(limit);
+        let context = bytes.into_iter().fold(context, Context::memory_limit);
         let (sender, receiver) = channel();
         pool.spawn(move || {
             // The receiver is gone if the work was left behind.

@@ -55,7 +55,7 @@ def test_keywords_of_maps_are_flags() -> None:
     ],
 )
 def test_other_keywords_are_flags(command: str, call: object) -> None:
-    ours = keywords(call) - {"self", "uv", "face_uv", "timeout", "progress", "threads"}
+    ours = keywords(call) - {"self", "uv", "face_uv", "timeout", "progress", "threads", "memory_limit"}
     assert ours <= flags(command)
 
 

@@ -145,6 +145,14 @@ def test_the_time_limit(seconds: float, ends: None) -> None:
     assert seconds <= time.monotonic() - start < seconds + 1.0
 
 
+def test_the_memory_limit() -> None:
+    with pytest.raises(sm.Stopped, match="memory") as raised:
+        LARGE.quad_mesh(3000, memory_limit=10_000_000)
+    assert raised.value.code == "memory-limit"
+    with pytest.raises(sm.InputError):
+        LARGE.parametrize(memory_limit=0)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no kill")
 @pytest.mark.parametrize("seconds", [0.1, 1.0])
 def test_ctrl_c_stops(seconds: float, ends: None) -> None:

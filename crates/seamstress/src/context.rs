@@ -1,6 +1,7 @@
-//! How long work is run: progress, cancellation, time limit, threads.
+//! How work is run: progress, cancellation, limits of time and memory, threads.
 
 use crate::error::{Error, ErrorKind, Stage};
+use crate::memory::Memory;
 use seamstress_parallel::with_threads;
 use seamstress_parametrize::progress::Progress as Step;
 use std::fmt;
@@ -22,6 +23,8 @@ pub struct Progress {
     pub n_components: usize,
     /// Estimated share of the stage that is done, 0 to 1.
     pub fraction: f64,
+    /// Memory that the whole work is expected to take at most, bytes: an estimate from numbers of triangles and cells.
+    pub expected_memory: u64,
 }
 
 /// A switch that stops work from another thread. Clones share it.
@@ -47,7 +50,7 @@ impl CancelToken {
 
 type Observer = dyn Fn(Progress) -> ControlFlow<()> + Send + Sync;
 
-/// How long work is run; attached to a surface once, with [`Surface::with_context`](crate::Surface::with_context).
+/// How work is run; attached to a surface once, with [`Surface::with_context`](crate::Surface::with_context).
 ///
 /// No result depends on it, unless it stops the work.
 #[derive(Clone, Default)]
@@ -55,6 +58,7 @@ pub struct Context {
     observer: Option<Arc<Observer>>,
     cancel: CancelToken,
     deadline: Option<(Instant, Duration)>,
+    memory_limit: Option<u64>,
     threads: Option<usize>,
 }
 
@@ -86,18 +90,29 @@ impl Context {
         self
     }
 
+    /// Refuses work that is expected to take more than so many bytes of memory, before it starts
+    /// ([`ErrorKind::MemoryLimit`]).
+    pub fn memory_limit(mut self, bytes: u64) -> Self {
+        self.memory_limit = Some(bytes);
+        self
+    }
+
     /// Uses this many threads; 0 stands for all cores.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = (threads > 0).then_some(threads);
         self
     }
 
-    /// Does work on the threads of this context and under its watch.
+    /// Does work that takes about so much memory, on the threads of this context and under its watch.
     pub(crate) fn run<T: Send>(
         &self,
+        expected: Memory,
         work: impl FnOnce(&mut Watcher) -> Result<T, Error> + Send,
     ) -> Result<T, Error> {
-        let mut watcher = Watcher { context: self.clone(), stage: None, stop: None };
+        if let Some(limit) = self.memory_limit.map(Memory).filter(|&limit| expected > limit) {
+            return Err(Error::too_large(expected, limit));
+        }
+        let mut watcher = Watcher { context: self.clone(), expected, stage: None, stop: None };
         self.on_threads(move || {
             let made = work(&mut watcher);
             made.map_err(|error| watcher.explain(error))
@@ -120,6 +135,7 @@ impl fmt::Debug for Context {
             .field("observer", &self.observer.is_some())
             .field("cancel", &self.cancel)
             .field("deadline", &self.deadline)
+            .field("memory_limit", &self.memory_limit)
             .field("threads", &self.threads)
             .finish()
     }
@@ -128,6 +144,7 @@ impl fmt::Debug for Context {
 /// Watches over one piece of work: passes progress on, and knows where and why it was stopped.
 pub(crate) struct Watcher {
     context: Context,
+    expected: Memory,
     stage: Option<Stage>,
     stop: Option<Stop>,
 }
@@ -146,12 +163,19 @@ impl Watcher {
             component: step.component,
             n_components: step.n_components,
             fraction: step.fraction,
+            expected_memory: self.expected.0,
         })
     }
 
     /// Enters a stage that has no progress of its own.
     pub(crate) fn enter(&mut self, stage: Stage) -> Result<(), Error> {
-        let progress = Progress { stage, component: 0, n_components: 1, fraction: 0.0 };
+        let progress = Progress {
+            stage,
+            component: 0,
+            n_components: 1,
+            fraction: 0.0,
+            expected_memory: self.expected.0,
+        };
         match self.see(progress) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Error::cancelled()),

@@ -1,6 +1,7 @@
 //! The one error of this crate.
 
 use crate::finding::{Elements, Finding};
+use crate::memory::Memory;
 use crate::words::counted;
 use seamstress_parametrize::Stage as Step;
 use seamstress_quads::QuadFaults;
@@ -126,6 +127,8 @@ pub enum ErrorKind {
     Cancelled,
     /// Stopped by the time limit.
     TimeLimit,
+    /// Not begun, since it is expected to take more memory than is allowed.
+    MemoryLimit,
     /// A fault of this program.
     Internal,
 }
@@ -140,7 +143,7 @@ pub enum ErrorCategory {
     Usage,
     /// The method found no result that it can vouch for.
     NoResult,
-    /// Stopped before the end.
+    /// Stopped before the end, by the caller or a limit.
     Stopped,
 }
 
@@ -167,6 +170,7 @@ impl ErrorKind {
             Self::NoPicture => "no-picture",
             Self::Cancelled => "cancelled",
             Self::TimeLimit => "time-limit",
+            Self::MemoryLimit => "memory-limit",
             Self::Internal => "internal",
         }
     }
@@ -190,7 +194,7 @@ impl ErrorKind {
             | Self::Uncertified
             | Self::Inconsistent
             | Self::Internal => ErrorCategory::NoResult,
-            Self::Cancelled | Self::TimeLimit => ErrorCategory::Stopped,
+            Self::Cancelled | Self::TimeLimit | Self::MemoryLimit => ErrorCategory::Stopped,
         }
     }
 }
@@ -301,6 +305,13 @@ impl Error {
         self.0.kind = ErrorKind::TimeLimit;
         self.0.message = format!("stopped: the time limit of {} s has passed", limit.as_secs_f64());
         self.with_hint("allow more with `time_limit`")
+    }
+
+    /// Work that would take more memory than is allowed.
+    pub(crate) fn too_large(expected: Memory, limit: Memory) -> Self {
+        let text = format!("this takes about {expected} of memory; the limit is {limit}");
+        Self::new(ErrorKind::MemoryLimit, text)
+            .with_hint("allow more with `memory_limit`, or take a coarser mesh or fewer quads")
     }
 
     /// What kind of failure it is.

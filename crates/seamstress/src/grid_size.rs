@@ -29,24 +29,33 @@ const MOST_QUADS: f64 = 1e8;
 
 impl GridSize {
     pub(crate) fn validate(self) -> Result<(), Error> {
-        let (name, value) = match self {
-            Self::Quads(x) => ("quads", x),
-            Self::EdgeLength(x) => ("edge_length", x),
-            Self::Scale(x) => ("scale", x),
-        };
+        let (name, value) = self.name();
         match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(Error::options(format!("{name}: {value} is no number larger than 0"))),
         }
     }
 
-    /// Refuses a grid of more quads than fit into memory, on a surface with the area of a square of this side.
+    /// About how many cells there are on a surface with the area of a square of this side.
+    pub(crate) fn cells(self, side: f64) -> f64 {
+        match self {
+            Self::Quads(x) => x,
+            Self::EdgeLength(x) => (side / x).powi(2),
+            Self::Scale(x) => (side * x).powi(2),
+        }
+    }
+
+    fn name(self) -> (&'static str, f64) {
+        match self {
+            Self::Quads(x) => ("quads", x),
+            Self::EdgeLength(x) => ("edge_length", x),
+            Self::Scale(x) => ("scale", x),
+        }
+    }
+
+    /// Refuses a grid of more quads than fit into any memory, on a surface with the area of a square of this side.
     pub(crate) fn check_count(self, side: f64) -> Result<(), Error> {
-        let (name, value, count) = match self {
-            Self::Quads(x) => ("quads", x, x),
-            Self::EdgeLength(x) => ("edge_length", x, (side / x).powi(2)),
-            Self::Scale(x) => ("scale", x, (side * x).powi(2)),
-        };
+        let ((name, value), count) = (self.name(), self.cells(side));
         match count <= MOST_QUADS {
             true => Ok(()),
             false => Err(Error::options(format!(

@@ -75,6 +75,7 @@ mod integer;
 #[cfg(feature = "lab")]
 pub mod lab;
 mod map;
+mod memory;
 mod mesh_format;
 mod mirrored;
 mod named;

@@ -23,6 +23,7 @@ use seamstress_parametrize::{
     Tolerance, Violations, make_aligned_map,
 };
 use serde::Serialize;
+#[cfg(any(feature = "page", feature = "render"))]
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 #[cfg(feature = "io")]
@@ -232,6 +233,7 @@ impl<R> SeamlessMap<R> {
     }
 
     /// The UV of every corner in mesh units.
+    #[cfg(any(feature = "page", feature = "render"))]
     pub(crate) fn unscaled_uvs(&self) -> Cow<'_, [[f64; 2]]> {
         match self.scale {
             1.0 => Cow::Borrowed(self.corner_uvs()),
@@ -373,7 +375,7 @@ impl Surface {
     pub fn parametrize(&self, options: &MapOptions) -> Result<SeamlessMap, Error> {
         options.validate()?;
         let options = &options.or_features(Features::none());
-        let made = self.context().run(|watcher| {
+        let made = self.context().run(self.memory_of_map(), |watcher| {
             let asked = self.features(&options.features)?;
             let sized = self.prepared_for_textures(&asked, options)?;
             sized.direct_map(asked, options, options.to_method(), watcher)?.packed(options)

@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test, with helpers")]
 
 use seamstress::{
-    CancelToken, Context, ErrorCategory, ExtractionOptions, Features, Inspection, MapOptions,
-    QuadOptions, Stage, Surface, SurfaceOptions, Weld,
+    CancelToken, Context, ErrorCategory, ExtractionOptions, Features, Inspection,
+    IntegerMapOptions, MapOptions, QuadOptions, Stage, Surface, SurfaceOptions, Weld,
 };
 use seamstress_testkit as testkit;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -264,6 +264,39 @@ fn a_token_and_a_time_limit_stop_work() {
     let error = late.quad_mesh(&QuadOptions::count(100)).unwrap_err();
     assert_eq!(error.code(), "time-limit");
     assert_eq!(error.hint(), Some("allow more with `time_limit`"));
+}
+
+#[test]
+fn work_that_needs_more_memory_than_allowed_is_refused_before_it_starts() {
+    let expected = Arc::new(AtomicU64::new(0));
+    let seen = Arc::clone(&expected);
+    let observed = torus().with_context(Context::new().observer(move |progress| {
+        seen.store(progress.expected_memory, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    }));
+    observed.parametrize(&MapOptions::default()).unwrap();
+    let expected = expected.load(Ordering::Relaxed);
+    assert!(expected > 1_000_000, "{expected}");
+
+    let limited = |limit| torus().with_context(Context::new().memory_limit(limit));
+    assert!(limited(expected).parametrize(&MapOptions::default()).is_ok());
+    let refused = limited(expected - 1).parametrize(&MapOptions::default()).unwrap_err();
+    assert_eq!(
+        (refused.code(), refused.kind().category()),
+        ("memory-limit", ErrorCategory::Stopped)
+    );
+    assert_eq!(refused.stage(), None);
+    // Many cells take more than few.
+    let limited = limited(1_000_000_000);
+    assert!(limited.quad_mesh(&QuadOptions::count(100)).is_ok());
+    for refused in [
+        limited.quad_mesh(&QuadOptions::count(10_000_000)).unwrap_err(),
+        limited.integer_map(&IntegerMapOptions::count(10_000_000)).unwrap_err(),
+    ] {
+        assert_eq!(refused.code(), "memory-limit");
+        let hint = "allow more with `memory_limit`, or take a coarser mesh or fewer quads";
+        assert_eq!(refused.hint(), Some(hint));
+    }
 }
 
 #[test]

@@ -59,13 +59,14 @@ fn faults_are_1_and_name_elements() {
 fn wrong_arguments_are_2() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::cube());
-    let wrong: [&[&str]; 14] = [
+    let wrong: [&[&str]; 15] = [
         &[],
         &["sew"],
         &["map", "in.obj"],
         &["map", "in.obj", "-o", "a.obj", "--threads", "0"],
         &["map", "in.obj", "-o", "a.obj", "--time-limit", "0"],
         &["map", "in.obj", "-o", "a.obj", "--time-limit", "soon"],
+        &["map", "in.obj", "-o", "a.obj", "--memory-limit", "much"],
         &["map", "in.obj", "-o", "a.obj", "--cone-bias", "nan"],
         &["map", "in.obj", "-o", "in.obj"],
         &["map", "in.obj", "-o", "./in.obj"],
@@ -110,11 +111,12 @@ fn failures_are_json_where_reports_are() {
     let folder = Folder::new();
     folder.write_obj("in.obj", &testkit::torus(300, 200, 1.0, 0.4));
     folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\n");
-    let cases: [(i32, &[&str], &str); 4] = [
+    let cases: [(i32, &[&str], &str); 5] = [
         (1, &["none.obj", "-o", "a.obj"], "unreadable"),
         (1, &["bad.obj", "-o", "a.obj"], "not-a-surface"),
         (2, &["in.obj", "-o", "in.obj"], "usage"),
         (4, &["in.obj", "-o", "a.obj", "--time-limit", "0.01"], "time-limit"),
+        (4, &["in.obj", "-o", "a.obj", "--memory-limit", "200MB"], "memory-limit"),
     ];
     for (code, arguments, name) in cases {
         let run = folder.expect(code, &[&["map", "--json"], arguments].concat());
@@ -123,6 +125,7 @@ fn failures_are_json_where_reports_are() {
         assert_eq!(report["command"], "map");
         assert_eq!(report["error"]["code"], name, "{report}");
         assert!(!report["error"]["message"].as_str().unwrap().is_empty());
+        assert!(report["cost"]["wall_seconds"].as_f64().unwrap() > 0.0);
         if name == "not-a-surface" {
             assert_eq!(report["error"]["stage"], "check");
             assert_eq!(report["error"]["findings"][0]["severity"], "error");

@@ -57,7 +57,8 @@ class NoCertifiedMap(SeamstressError, RuntimeError):
 
 
 class Stopped(SeamstressError, RuntimeError):
-    """Stopped before the end, by the time limit or by the function that is told of progress."""
+    """Stopped before the end, by a limit of time or memory, or by the function that is told of
+    progress."""
 
 
 def made(kind: str, message: str, fields: str) -> SeamstressError:

@@ -11,7 +11,7 @@ _Map = tuple[bytes, bytes]
 #: Name, on what it is, kind, numbers in a row, rows, and names of labels.
 _Attribute = tuple[str, str, str, int, bytearray, list[str]]
 _Given = tuple[str, str, str, int, bytes, list[str]]
-_Run = tuple[Optional[int], Optional[float], Optional[Callable[[str, float], Optional[bool]]]]
+_Run = tuple[Optional[int], Optional[float], Optional[int], Optional[Callable[[str, float], Optional[bool]]]]
 
 def main(arguments: Sequence[str]) -> int: ...
 def flags(command: str) -> list[tuple[str, str, str | None]]: ...

@@ -31,6 +31,8 @@ class RunOptions(TypedDict, total=False):
 
     #: Seconds after which it is stopped.
     timeout: float | None
+    #: Bytes; work that is expected to take more memory is refused before it starts.
+    memory_limit: float | None
     #: Number of threads; all cores if none is given.
     threads: int | None
     progress: Progress

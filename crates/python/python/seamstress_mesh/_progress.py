@@ -10,25 +10,29 @@ from typing import Any, Callable, Optional
 from ._errors import InputError
 
 Told = Optional[Callable[[str, float], Optional[bool]]]
-#: Threads, seconds, and who is told of progress.
-Run = "tuple[int | None, float | None, Told]"
+#: Threads, seconds, bytes, and who is told of progress.
+Run = "tuple[int | None, float | None, int | None, Told]"
 
 
 @contextmanager
-def running(options: Mapping[str, Any]) -> Iterator[tuple[int | None, float | None, Told]]:
+def running(options: Mapping[str, Any]) -> Iterator[tuple[int | None, float | None, int | None, Told]]:
     """How a call is run, with a bar if ``progress`` is ``True``."""
-    threads, timeout, progress = (options.get(name) for name in ("threads", "timeout", "progress"))
+    names = ("threads", "timeout", "memory_limit", "progress")
+    threads, timeout, memory, progress = (options.get(name) for name in names)
     if threads is not None and (threads != int(threads) or not 1 <= threads <= 1024):
         raise InputError(f"threads: {threads} is no whole number from 1 to 1024")
     if timeout is not None and not timeout > 0:
         raise InputError(f"timeout: {timeout} is no number of seconds larger than 0")
+    if memory is not None and not 1 <= memory < 2**64:
+        raise InputError(f"memory_limit: {memory} is no number of bytes larger than 0")
     timeout = None if timeout is None else float(timeout)
+    memory = None if memory is None else int(memory)
     threads = None if threads is None else int(threads)
     if progress is True:
         with _bar() as told:
-            yield threads, timeout, told
+            yield threads, timeout, memory, told
     else:
-        yield threads, timeout, progress or None
+        yield threads, timeout, memory, progress or None
 
 
 @contextmanager

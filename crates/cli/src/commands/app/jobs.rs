@@ -60,6 +60,7 @@ impl Job {
                 "component": progress.component,
                 "n_components": progress.n_components,
                 "fraction": progress.fraction,
+                "expected_memory": progress.expected_memory,
             })
         });
         let (state, error) = match &*outcome {

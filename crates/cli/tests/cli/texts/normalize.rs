@@ -7,7 +7,7 @@ const ROUNDING_ERROR: f64 = 1e-9;
 
 /// Values of keys with these in them depend on the machine, the release or the order of operations, not on the format.
 const VOLATILE: [&str; 7] =
-    ["seconds", "peak_memory_bytes", "threads", "iterations", "worst", "by_matching", "seamstress"];
+    ["seconds", "memory_bytes", "threads", "iterations", "worst", "by_matching", "seamstress"];
 
 /// Longer lists end with a count.
 const LONGEST_LIST: usize = 3;

@@ -155,6 +155,8 @@ def _command(task: Task, work: Path, is_stopped: Callable[[], bool]) -> Outcome:
         outcome.code = error.get("code")
         if outcome.code == NO_PICTURE and drawn:
             return _command(replace(task, picture=False), work, is_stopped)
+        if outcome.code == "memory-limit":
+            outcome.status = "memory-limit"
         if outcome.status == "refused" and OUT_OF_MEMORY in (error.get("message") or ""):
             # While the input was read: not its fault.
             outcome.status = "memory-limit"
