@@ -1,6 +1,7 @@
 //! Measurements of Seamstress: what the command `seamstress-bench` runs.
 
 mod compare;
+pub mod family;
 mod jobs;
 mod machine;
 mod map_files;

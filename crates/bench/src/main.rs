@@ -1,6 +1,7 @@
 //! The command `seamstress-bench`.
 
 use clap::{Parser, Subcommand};
+use seamstress_bench::family;
 use seamstress_bench::measurements::Measurement;
 use seamstress_bench::output::{show, write_page};
 use seamstress_bench::process::exit_code;
@@ -27,6 +28,7 @@ struct Args {
 #[derive(Debug, Subcommand)]
 enum Command {
     Results(results::Args),
+    Family(family::Args),
     #[command(flatten)]
     Measure(Measurement),
 }
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let measurement = match &args.command {
         Command::Measure(measurement) => measurement,
+        Command::Family(family) => return family::run(family),
         Command::Results(results) => {
             let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("docs/results"));
             return results::run(results, &folder);

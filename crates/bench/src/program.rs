@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -22,9 +23,35 @@ pub(crate) enum Outcome {
     /// With a result, and its report.
     Done(Report),
     /// The input is at fault; the reason.
-    Refused(String),
+    Refused(Reason),
     /// There is no result; the reason.
-    Failed(String),
+    Failed(Reason),
+}
+
+/// Why a run gave no result.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Reason {
+    /// The code of the error, if the program ended with one.
+    pub(crate) code: Option<String>,
+    /// What it said.
+    pub(crate) message: String,
+    /// What it cost, as a report says it.
+    pub(crate) cost: Option<Report>,
+}
+
+impl From<String> for Reason {
+    fn from(message: String) -> Self {
+        Self { code: None, message, cost: None }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.code {
+            Some(code) => write!(f, "{code}: {}", self.message),
+            None => f.write_str(&self.message),
+        }
+    }
 }
 
 impl Outcome {
@@ -56,22 +83,33 @@ impl Program {
         }
         let output = match process.args(arguments).output() {
             Ok(output) => output,
-            Err(e) => return Outcome::Failed(format!("cannot run {}: {e}", self.path.display())),
+            Err(e) => {
+                return Outcome::Failed(format!("cannot run {}: {e}", self.path.display()).into());
+            }
         };
         match output.status.code() {
             Some(0) => match Report::parse(&output.stdout) {
                 Ok(report) => Outcome::Done(report),
-                Err(e) => Outcome::Failed(format!("the report cannot be read: {e}")),
+                Err(e) => Outcome::Failed(format!("the report cannot be read: {e}").into()),
             },
             Some(1) => Outcome::Refused(reason(mesh, &output)),
-            Some(code) => Outcome::Failed(format!("exit {code}: {}", reason(mesh, &output))),
-            None => Outcome::Failed(format!("{}: {}", output.status, reason(mesh, &output))),
+            _ => Outcome::Failed(reason(mesh, &output)),
         }
     }
 }
 
+/// The error that the program printed as JSON, or what else it said.
+fn reason(mesh: &Path, output: &Output) -> Reason {
+    let report = Report::parse(&output.stdout).ok();
+    let text = |pointer| Some(report.as_ref()?.get(pointer).as_str()?.to_owned());
+    match (text("/error/code"), text("/error/message")) {
+        (Some(code), Some(message)) => Reason { code: Some(code), message, cost: report },
+        _ => format!("{}: {}", output.status, first_line(mesh, output)).into(),
+    }
+}
+
 /// The first line of the error, and the next if the first announces it, without the name of the file.
-fn reason(mesh: &Path, output: &Output) -> String {
+fn first_line(mesh: &Path, output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr);
     let mut lines = text.lines().skip_while(|line| !line.starts_with("error:"));
     let Some(first) = lines.next().or(text.lines().next()) else {
@@ -88,7 +126,7 @@ fn reason(mesh: &Path, output: &Output) -> String {
 }
 
 /// The JSON report of a run.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Report(Value);
 
 impl Report {
@@ -149,9 +187,24 @@ mod tests {
             stdout: Vec::new(),
             stderr: text.as_bytes().to_vec(),
         };
-        let of = |text: &str| reason(Path::new("a/m.obj"), &output(text));
+        let of = |text: &str| first_line(Path::new("a/m.obj"), &output(text));
         assert_eq!(of("note: x\nerror: a/m.obj: no faces\n"), "no faces");
         assert_eq!(of("error: a/m.obj is no mesh:\n  an edge\n"), "is no mesh: an edge");
         assert_eq!(of(""), "no message");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_error_in_json_has_its_code() {
+        use std::os::unix::process::ExitStatusExt;
+        let json =
+            br#"{"error": {"code": "no-map", "message": "none"}, "cost": {"cpu_seconds": 2}}"#;
+        let status = std::process::ExitStatus::from_raw(3 << 8);
+        let output = Output { status, stdout: json.to_vec(), stderr: Vec::new() };
+        let found = reason(Path::new("m.obj"), &output);
+        assert_eq!(found.to_string(), "no-map: none");
+        assert_eq!(found.cost.unwrap().cpu_seconds(), Some(2.0));
+        let killed = Output { stdout: Vec::new(), ..output };
+        assert_eq!(reason(Path::new("m.obj"), &killed).code, None);
     }
 }

@@ -1,5 +1,6 @@
 //! All pages of `docs/results`, by one command.
 
+use crate::family;
 use crate::machine::provenance;
 use crate::measurements::Measurement;
 use crate::meshes::{Selection, name};
@@ -18,9 +19,15 @@ struct Page {
     commands: &'static [&'static str],
 }
 
-/// In a command, `MESHES` stands for the meshes given and `SEAMSTRESS` for the program.
+/// In a command, `MESHES` stands for the meshes given, `FAMILY` for a folder of the generated ones, and `SEAMSTRESS` for the
+/// program.
 const PAGES: &[Page] = &[
     Page { file: "maps", title: "Maps", commands: &["maps MESHES"] },
+    Page {
+        file: "collection",
+        title: "Collections",
+        commands: &["collection FAMILY --kinds", "collection MESHES"],
+    },
     Page { file: "speed", title: "Speed", commands: &["speed MESHES --largest 100000"] },
     Page {
         file: "polish",
@@ -102,6 +109,8 @@ pub struct Args {
 /// If a measurement cannot be made, or a page cannot be written.
 pub fn run(args: &Args, folder: &Path) -> Result<bool, Box<dyn Error>> {
     fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    let temporary = tempfile::tempdir()?;
+    let generated = temporary.path().join("family");
     let mut passed = true;
     for page in PAGES {
         if !args.pages.is_empty() && !args.pages.iter().any(|file| file == page.file) {
@@ -109,7 +118,10 @@ pub fn run(args: &Args, folder: &Path) -> Result<bool, Box<dyn Error>> {
         }
         let (mut text, mut described) = (String::new(), String::new());
         for command in page.commands {
-            let words = words(command, &args.selection)?;
+            let words = words(command, &args.selection, &generated)?;
+            if command.contains("FAMILY") && !generated.exists() {
+                family::write(&generated, 0, family::FAMILY)?;
+            }
             let (measurement, about) = parse(&words)?;
             let section = measurement.run()?;
             passed &= section.passed;
@@ -125,11 +137,16 @@ pub fn run(args: &Args, folder: &Path) -> Result<bool, Box<dyn Error>> {
 }
 
 /// A command as it is run.
-fn words(command: &str, selection: &Selection) -> Result<Vec<OsString>, Box<dyn Error>> {
+fn words(
+    command: &str,
+    selection: &Selection,
+    family: &Path,
+) -> Result<Vec<OsString>, Box<dyn Error>> {
     let mut words = Vec::new();
     for word in command.split(' ') {
         match word {
             "MESHES" => words.extend(selection.meshes.iter().map(OsString::from)),
+            "FAMILY" => words.push(family.into()),
             "SEAMSTRESS" => words.push(sibling("seamstress")?.into_os_string()),
             _ => words.push(word.into()),
         }
@@ -195,11 +212,12 @@ mod tests {
         for command in PAGES.iter().flat_map(|page| page.commands) {
             // The program is not beside the tests.
             let command = command.replace("SEAMSTRESS", "seamstress");
-            let words = words(&command, &selection).unwrap();
+            let words = words(&command, &selection, Path::new("family")).unwrap();
             let (_, about) = parse(&words).unwrap();
             assert!(about.lines().count() > 1, "{command}: {about}");
             let count = |option: &str| words.iter().filter(|word| *word == option).count();
-            assert_eq!((count("--largest"), count("--only"), count("b.obj")), (1, 1, 1));
+            let meshes = count("b.obj") + count("family");
+            assert_eq!((count("--largest"), count("--only"), meshes), (1, 1, 1));
         }
         assert!(parse(&["nothing".into()]).is_err());
     }

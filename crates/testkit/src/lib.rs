@@ -10,6 +10,7 @@ mod collection;
 mod consistency;
 mod data;
 mod degenerate;
+mod family;
 mod flips;
 mod integer_maps;
 mod modify;
@@ -26,6 +27,7 @@ pub use collection::{FOLDER, REQUIRED, in_collection};
 pub use consistency::{CheckedSeam, consistency_faults};
 pub use data::{DataMesh, PolygonSoup, data_meshes};
 pub use degenerate::{with_copied_vertices, with_vertices_on_edges};
+pub use family::family;
 pub use flips::random_flips;
 pub use integer_maps::{IntegerMap, random_voxels, squares};
 pub use modify::{

@@ -189,7 +189,7 @@ impl Build {
             (Outcome::Done(report), Some((asked, script))) => {
                 match judge(script, *asked, mesh, &output) {
                     Ok(verdict) => Outcome::Done(report.with("judged", verdict)),
-                    Err(e) => Outcome::Failed(format!("not judged: {e}")),
+                    Err(e) => Outcome::Failed(format!("not judged: {e}").into()),
                 }
             }
             (outcome, _) => outcome,

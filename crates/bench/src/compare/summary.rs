@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn lost_gained_and_worse() {
-        let failed = || Outcome::Failed("no layout".into());
+        let failed = || Outcome::Failed("no layout".to_owned().into());
         let pair = |name: &str, old, new| Pair { name: name.into(), old, new, is_same: false };
         let pairs = [
             pair("a", done(2.0), failed()),

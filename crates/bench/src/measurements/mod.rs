@@ -1,5 +1,6 @@
 //! What can be measured: one subcommand each.
 
+mod collection;
 mod conic;
 mod consistency;
 mod factorisations;
@@ -24,6 +25,7 @@ use std::error::Error;
 #[expect(missing_docs, reason = "a comment here would replace that of the options in the help")]
 pub enum Measurement {
     Compare(compare::Args),
+    Collection(collection::Args),
     Maps(maps::Args),
     Speed(speed::Args),
     Factorisations(factorisations::Args),
@@ -48,6 +50,7 @@ impl Measurement {
     pub fn run(&self) -> Result<Section, Box<dyn Error>> {
         match self {
             Self::Compare(args) => compare::measure(args),
+            Self::Collection(args) => collection::measure(args),
             Self::Maps(args) => maps::measure(args),
             Self::Speed(args) => speed::measure(args),
             Self::Factorisations(args) => factorisations::measure(args),

@@ -62,7 +62,9 @@ pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
             let options = ["--quads", &quads, "--adaptive", &adaptive_text];
             let report = match program.run("quad", &subject.path, &output, &options) {
                 Outcome::Done(report) => report,
-                Outcome::Refused(reason) | Outcome::Failed(reason) => return Err(reason.into()),
+                Outcome::Refused(reason) | Outcome::Failed(reason) => {
+                    return Err(reason.to_string().into());
+                }
             };
             let how = if adaptive > 0.0 { "adaptive" } else { "alike" };
             missed.extend(

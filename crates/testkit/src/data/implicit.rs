@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// The surface around the points where `f` is positive, as quads, over the cells of a cubic grid with
 /// `n` points a side that fills the cube from -1 to 1.
-pub(super) fn surface(n: i32, f: impl Fn([f64; 3]) -> f64) -> PolygonSoup {
+pub(crate) fn surface(n: i32, f: impl Fn([f64; 3]) -> f64) -> PolygonSoup {
     let point = |p: [i32; 3]| p.map(|k| 2.0 * f64::from(k) / f64::from(n - 1) - 1.0);
     let value = |p: [i32; 3]| f(point(p));
     let mut soup = PolygonSoup::default();

@@ -1,7 +1,7 @@
 //! The small meshes of `tests/data`: made here, so that everyone may have them.
 
-mod implicit;
-mod planar;
+pub(crate) mod implicit;
+pub(crate) mod planar;
 mod shapes;
 
 use seamstress_mesh::soup::{TriangleSoup, triangulate};

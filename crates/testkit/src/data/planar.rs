@@ -8,14 +8,14 @@ const SAME: f64 = 1e-6;
 
 /// Faces in the plane, counter-clockwise, that share their points.
 #[derive(Default)]
-pub(super) struct Planar {
-    pub(super) points: Vec<[f64; 2]>,
-    pub(super) faces: Vec<Vec<u32>>,
+pub(crate) struct Planar {
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) faces: Vec<Vec<u32>>,
     numbers: BTreeMap<[i64; 2], u32>,
 }
 
 impl Planar {
-    pub(super) fn face(&mut self, corners: &[[f64; 2]]) {
+    pub(crate) fn face(&mut self, corners: &[[f64; 2]]) {
         let face = corners.iter().map(|&p| self.number(p)).collect();
         self.faces.push(face);
     }
@@ -29,7 +29,7 @@ impl Planar {
     }
 
     /// Unit blocks of `k` by `k` squares each; `hole` gives the radius of the hole in the middle of a block.
-    pub(super) fn blocks(
+    pub(crate) fn blocks(
         [columns, rows]: [u32; 2],
         k: u32,
         hole: impl Fn(u32, u32) -> Option<f64>,
@@ -85,13 +85,13 @@ impl Planar {
     }
 
     /// The surface over the region, each point moved to its place in space.
-    pub(super) fn lifted(&self, place: impl Fn([f64; 2]) -> [f64; 3]) -> PolygonSoup {
+    pub(crate) fn lifted(&self, place: impl Fn([f64; 2]) -> [f64; 3]) -> PolygonSoup {
         let positions = self.points.iter().map(|&p| place(p)).collect();
         PolygonSoup { positions, polygons: self.faces.clone() }
     }
 
     /// The solid between the first and the last height, its walls divided at the others.
-    pub(super) fn extruded(&self, heights: &[f64]) -> PolygonSoup {
+    pub(crate) fn extruded(&self, heights: &[f64]) -> PolygonSoup {
         let sides = |face: &[u32]| -> Vec<(u32, u32)> {
             (0..face.len()).map(|k| (face[k], face[(k + 1) % face.len()])).collect()
         };

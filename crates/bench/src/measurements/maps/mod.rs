@@ -126,14 +126,16 @@ fn section(runs: &[Run], with_verdicts: bool, seconds: f64) -> Section {
     let (mut refused, mut failed, mut unverified) = (Vec::new(), Vec::new(), Vec::new());
     let (mut mapped, mut cpu_seconds) = (0, 0.0);
     for run in runs {
-        let item = |reason: &str| format!("{}: {}", escape(&run.name), escape(reason));
+        let item = |reason: &dyn ToString| {
+            format!("{}: {}", escape(&run.name), escape(&reason.to_string()))
+        };
         match &run.outcome {
             Outcome::Refused(reason) => refused.push(item(reason)),
             Outcome::Failed(reason) => failed.push(item(reason)),
             Outcome::Done(report) => {
                 table.push(run.row(report));
                 let fault = run.verdict.as_ref().and_then(|verdict| verdict.fault.as_deref());
-                unverified.extend(fault.map(item));
+                unverified.extend(fault.map(|fault| item(&fault)));
                 mapped += 1;
                 cpu_seconds += report.cpu_seconds().unwrap_or(0.0);
             }
@@ -215,10 +217,11 @@ mod tests {
     fn what_has_no_map_is_listed() {
         let run = |name: &str, outcome| Run { name: name.into(), outcome, verdict: None };
         let done = || Outcome::Done(Report::parse(b"{}").unwrap());
-        let mut runs = vec![run("a", done()), run("b", Outcome::Refused("a fan".into()))];
+        let mut runs =
+            vec![run("a", done()), run("b", Outcome::Refused("a fan".to_owned().into()))];
         let good = section(&runs, false, 0.0);
         assert!(good.passed && good.text.contains("* b: a fan\n"), "{}", good.text);
-        runs.push(run("c", Outcome::Failed("no layout".into())));
+        runs.push(run("c", Outcome::Failed("no layout".to_owned().into())));
         let bad = section(&runs, false, 0.0);
         assert!(!bad.passed && bad.text.contains("3; 1 mapped, 1 refused, 1 failed"));
     }
