@@ -14,6 +14,9 @@ mod summary;
 mod system;
 mod text;
 
+#[cfg(all(feature = "app", fuzzing))]
+pub use commands::serve_forever;
+
 use clap::FromArgMatches;
 use command_line::CommandLine;
 use std::ffi::OsString;

@@ -30,7 +30,7 @@ fn two_of_each_kind_have_maps() {
 }
 
 #[test]
-#[ignore = "a quarter of an hour"]
+#[ignore = "about half a minute of computation"]
 fn of_five_hundred_at_least_98_per_cent_have_maps() {
     let (certified, all) = certified(0..500);
     assert_eq!(all, 500);

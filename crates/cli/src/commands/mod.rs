@@ -20,6 +20,8 @@ mod report;
 
 #[cfg(feature = "app")]
 pub(crate) use app::AppArgs;
+#[cfg(all(feature = "app", fuzzing))]
+pub use app::serve_forever;
 pub(crate) use check::CheckArgs;
 pub(crate) use extract::ExtractArgs;
 pub(crate) use features::FeaturesArgs;

@@ -71,6 +71,15 @@ impl AppArgs {
     }
 }
 
+/// Serves the page on a thread of its own for as long as the process lives; its address. For fuzz targets.
+#[cfg(fuzzing)]
+pub fn serve_forever() -> std::io::Result<String> {
+    let server = Server::start(0, None)?;
+    let address = server.address();
+    std::thread::spawn(move || server.serve(&AtomicBool::new(false), Duration::MAX));
+    Ok(address)
+}
+
 fn unusable(what: &dyn std::fmt::Display, cause: &dyn std::fmt::Display) -> Failure {
     Failure::Usage(format!("{what} cannot be used: {cause}"))
 }
