@@ -59,6 +59,7 @@ mod context;
 mod direction_sources;
 mod directions;
 mod error;
+mod expected;
 mod feature_edges;
 mod feature_sources;
 mod features;

@@ -1,7 +1,5 @@
-//! How much memory work is expected to take.
+//! Estimates of memory.
 
-use crate::grid_size::GridSize;
-use crate::surface::Surface;
 use std::fmt;
 
 /// Bytes.
@@ -19,7 +17,13 @@ const OF_GRID: f64 = 7_000.0;
 const OF_CELL: f64 = 400.0;
 
 impl Memory {
-    fn of_grid(triangles: usize, cells: f64) -> Self {
+    /// Of a map with so many triangles.
+    pub(crate) fn of_map(triangles: usize) -> Self {
+        Self((BASE + OF_MAP * triangles as f64) as u64)
+    }
+
+    /// Of a grid on so many triangles.
+    pub(crate) fn of_grid(triangles: usize, cells: f64) -> Self {
         Self((BASE + OF_GRID * triangles as f64 + OF_CELL * cells) as u64)
     }
 }
@@ -32,28 +36,5 @@ impl fmt::Display for Memory {
             1_000_000..1_000_000_000 => write!(f, "{:.0} MB", bytes / 1e6),
             _ => write!(f, "{:.1} GB", bytes / 1e9),
         }
-    }
-}
-
-impl Surface {
-    /// Of a map of this surface, or of another layout of it.
-    pub(crate) fn memory_of_map(&self) -> Memory {
-        Memory((BASE + OF_MAP * self.faces().len() as f64) as u64)
-    }
-
-    /// Of an integer-grid map or quads of about a size.
-    pub(crate) fn memory_of_grid(&self, size: GridSize) -> Memory {
-        Memory::of_grid(self.faces().len(), size.cells(self.metric().side()))
-    }
-
-    /// Of the quads of a map in grid units.
-    pub(crate) fn memory_of_cells(&self, corner_uvs: &[[f64; 2]]) -> Memory {
-        let area = |uvs: &[[f64; 2]]| match *uvs {
-            [a, b, c] => {
-                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
-            }
-            _ => 0.0,
-        };
-        Memory::of_grid(self.faces().len(), corner_uvs.chunks(3).map(area).sum())
     }
 }
