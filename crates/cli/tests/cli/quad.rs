@@ -248,11 +248,11 @@ fn badly_shaped_quads_are_mended_unless_the_map_is_wanted_as_it_is() {
 #[test]
 fn what_is_merged_and_what_gets_no_quads_is_said_by_every_command() {
     let folder = Folder::new();
-    // A cube whose faces share no vertices, and a triangle smaller than a cell.
+    // A cube whose faces share no vertices, and a triangle smaller than a cell, and too thin for one of its own size.
     let mut soup = kit::subdivide(&kit::subdivide(&kit::cube()));
     let corners = soup.faces.concat();
     soup.positions = corners.iter().map(|&v| soup.positions[v as usize]).collect();
-    soup.positions.extend([[9.0, 0.0, 0.0], [9.01, 0.0, 0.0], [9.0, 0.01, 0.0]]);
+    soup.positions.extend([[9.0, 0.0, 0.0], [9.01, 0.0, 0.0], [9.0, 0.0005, 0.0]]);
     soup.faces =
         (0..soup.positions.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
     folder.write_obj("parts.obj", &soup);
