@@ -46,7 +46,8 @@ impl FramedCut {
     }
 }
 
-fn in_gauge(frames: &[Complex64], gauge: &FaceData<i32>) -> Vec<Complex64> {
+/// Frames of faces whose gauge changes by these quarter turns.
+pub(crate) fn in_gauge(frames: &[Complex64], gauge: &FaceData<i32>) -> Vec<Complex64> {
     frames.iter().zip(gauge.iter()).map(|(&r, &k)| turn(r, k)).collect()
 }
 

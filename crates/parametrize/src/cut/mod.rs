@@ -15,6 +15,7 @@ pub use chains::{Chain, SeamGraph};
 pub use dual_tree::{DualTree, curvature_weight, flatter_end};
 pub use gauge::{regauge, turned_vertices};
 pub use isometric::{frames_of_angles, rotations, unfold};
+pub(crate) use matched::in_gauge;
 pub use matched::{FramedCut, MatchedCut};
 pub use partial::PartialCut;
 pub(crate) use steiner::DisjointSets;

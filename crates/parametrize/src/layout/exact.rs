@@ -5,7 +5,7 @@ use super::arap::{Poisson, frames};
 use super::newton::{NewtonOptions, NewtonSolution, minimize};
 use super::problem::LayoutProblem;
 use super::space::{LinearSpace, seamless_space};
-use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, regauge, turned_vertices};
+use crate::cut::{Cut, MatchedCut, SeamGraph, connect_cones, in_gauge, regauge, turned_vertices};
 use crate::energy::{Energy, Triangle, is_positive, triangles};
 use crate::features::Sectors;
 use crate::map::SeamlessMap;
@@ -266,7 +266,7 @@ impl ExactLayout {
         iterations: usize,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Vec<f64>, SolveError> {
-        let turned = self.in_gauge(frames);
+        let turned = in_gauge(frames, &self.gauge);
         Ok(Poisson::new(&mut self.problem)?.arap(turned, iterations, watch)?)
     }
 
@@ -275,13 +275,8 @@ impl ExactLayout {
     /// # Errors
     /// When it cannot be factored.
     pub fn poisson(&mut self, frames: &[Complex64]) -> Result<Vec<f64>, NotPositiveDefinite> {
-        let turned = self.in_gauge(frames);
+        let turned = in_gauge(frames, &self.gauge);
         Ok(Poisson::new(&mut self.problem)?.follow_frames(&turned))
-    }
-
-    /// Frames of the unfolding in the gauge of this cut.
-    fn in_gauge(&self, frames: &[Complex64]) -> Vec<Complex64> {
-        frames.iter().zip(self.gauge.iter()).map(|(&r, &k)| turn(r, k)).collect()
     }
 
     /// Images of the axes under a map given by its corners, turned into this gauge.
