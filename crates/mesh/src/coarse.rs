@@ -5,6 +5,7 @@
 //! moves, and the topology stays.
 
 use crate::vector::{Point, cross, dot, norm, sub};
+use seamstress_parallel::prelude::*;
 
 /// A mesh whose vertices are some of another.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,6 +24,8 @@ const SHARE: usize = 2;
 const LEAST_COSINE: f64 = 0.5;
 /// Twice the area of a face over the square of its longest edge; a collapse makes none worse than both this and what was.
 const LEAST_SHAPE: f64 = 0.1;
+/// Vertices whose collapses are looked for in one go.
+const CHUNK: usize = 1024;
 /// Weight of planes that hold the boundary, where those of faces have their areas.
 const RIM: f64 = 10.0;
 /// Weight of the length of an edge, which decides where the surface is flat.
@@ -190,10 +193,14 @@ impl<'a> Round<'a> {
     /// Where each vertex goes: at most so many to a neighbour, no two of which share a face with another.
     fn collapses(&self, is_kept: &[bool], at_most: usize) -> Vec<u32> {
         let vertices = 0..self.positions.len() as u32;
-        let free = vertices.clone().filter(|&v| !is_kept[v as usize] && !self.star(v).is_empty());
-        let mut rings = Rings::default();
+        let is_free = |&v: &u32| !is_kept[v as usize] && !self.star(v).is_empty();
+        let free: Vec<u32> = vertices.clone().filter(is_free).collect();
+        let best_of = |some: &[u32]| -> Vec<(f64, u32, u32)> {
+            let mut rings = Rings::default();
+            some.iter().filter_map(|&v| self.best(v, &mut rings)).collect()
+        };
         let mut best: Vec<(f64, u32, u32)> =
-            free.filter_map(|v| self.best(v, &mut rings)).collect();
+            free.par_chunks(CHUNK).flat_map_iter(best_of).collect();
         best.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         best.truncate(best.len().div_ceil(SHARE));
         let mut target: Vec<u32> = vertices.collect();

@@ -50,3 +50,21 @@ pub fn with_threads<R: Send>(
 ) -> Result<R, ThreadsError> {
     Ok(work())
 }
+
+/// Runs work on the calling thread, and other work `aside`: on a thread of the caller's pool that is free meanwhile, or
+/// afterwards.
+#[cfg(feature = "rayon")]
+pub fn beside<R>(aside: impl FnOnce() + Send, work: impl FnOnce() -> R) -> R {
+    rayon::in_place_scope(|scope| {
+        scope.spawn(|_| aside());
+        work()
+    })
+}
+
+/// Runs work, then other work.
+#[cfg(not(feature = "rayon"))]
+pub fn beside<R>(aside: impl FnOnce(), work: impl FnOnce() -> R) -> R {
+    let result = work();
+    aside();
+    result
+}

@@ -63,11 +63,6 @@ pub(super) struct Cleaned {
 }
 
 impl Cleaned {
-    /// Other matchings with the same cones, of which the same is expected.
-    pub(super) fn on(self, start: FramedCut) -> Self {
-        Self { start, ..self }
-    }
-
     /// Whether a layout is as good as expected.
     pub(super) fn is_met_by(&self, layout: &RelaxedLayout) -> bool {
         layout.excess() <= TRUST * self.estimate

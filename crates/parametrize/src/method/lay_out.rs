@@ -6,7 +6,8 @@ use super::relaxed::{RelaxedLayout, relax};
 use super::round::round;
 use super::start::repaired;
 use super::{MapOptions, MethodError, Start};
-use crate::layout::ladder::{self, LayoutEffort, SeamlessLayout};
+use crate::cut::FramedCut;
+use crate::layout::ladder::{self, LayoutEffort};
 use crate::progress::{Watch, unless_cancelled};
 use crate::rounding::Rounding;
 
@@ -24,16 +25,16 @@ pub(super) fn lay_out<'m>(
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Domain<'m>, Rounding, RelaxedLayout), MethodError> {
     let Some(cleaned) = cleaned else {
-        let (domain, rounding, layout) = lay_out_rounded(domain, rounding, start, options, watch)?;
-        let layout = relax(layout, domain.guide.as_ref(), watch)?;
-        return Ok((domain, rounding, layout));
+        return lay_out_rounded(domain, rounding, LayoutEffort::Thorough, start, options, watch);
     };
-    let without = match lay_out_cleaned(&domain, cleaned, watch)? {
+    let without = match lay_out_cleaned(&domain, &cleaned.start, watch)? {
         Some(layout) if cleaned.is_met_by(&layout) => return Ok((domain, rounding, layout)),
         other => other,
     };
     let all = domain.features();
-    let with = lay_out(domain.clone(), rounding.clone(), None, start, options, watch);
+    // With a layout at hand the other is worth no more effort than it took.
+    let effort = if without.is_some() { LayoutEffort::Brief } else { LayoutEffort::Thorough };
+    let with = lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch);
     match (without, unless_cancelled(with)?) {
         // Neither is worth a feature.
         (Some(without), Ok((fewer, _, with)))
@@ -52,7 +53,7 @@ pub(super) fn lay_out<'m>(
 /// [`MethodError`].
 pub(super) fn lay_out_cleaned(
     domain: &Domain<'_>,
-    cleaned: &Cleaned,
+    cleaned: &FramedCut,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
     // The last rung costs most, and what it finds is seldom as good as expected; along a guide more cones depend on it.
@@ -61,7 +62,7 @@ pub(super) fn lay_out_cleaned(
         Some(_) => LayoutEffort::Thorough,
     };
     let (sectors, metric) = (&domain.sectors, &domain.metric);
-    let layout = ladder::lay_out(sectors, metric, &cleaned.start, effort, watch);
+    let layout = ladder::lay_out(sectors, metric, cleaned, effort, watch);
     match unless_cancelled(layout)? {
         Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), watch)?)),
         // As they were rounded along a guide, cones are far too many.
@@ -70,7 +71,7 @@ pub(super) fn lay_out_cleaned(
     }
 }
 
-/// The layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
+/// The relaxed layout of rounded matchings. Where there is none, aligned edges near the defects are dropped; the matchings of
 /// the others stay as long as features are near the defects.
 ///
 /// # Errors
@@ -78,16 +79,19 @@ pub(super) fn lay_out_cleaned(
 fn lay_out_rounded<'m>(
     domain: Domain<'m>,
     rounding: Rounding,
+    effort: LayoutEffort,
     start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
-) -> Result<(Domain<'m>, Rounding, SeamlessLayout), MethodError> {
+) -> Result<(Domain<'m>, Rounding, RelaxedLayout), MethodError> {
     let (mut domain, mut rounding) = (domain, rounding);
     loop {
         let (sectors, metric) = (&domain.sectors, &domain.metric);
-        let effort = LayoutEffort::Thorough;
         let defects = match ladder::lay_out(sectors, metric, &rounding.start, effort, watch)? {
-            Ok(layout) => return Ok((domain, rounding, layout)),
+            Ok(layout) => {
+                let layout = relax(layout, domain.guide.as_ref(), watch)?;
+                return Ok((domain, rounding, layout));
+            }
             Err(defects) => defects,
         };
         let Some(fewer) = domain.without_features_at(&defects) else {

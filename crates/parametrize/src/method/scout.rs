@@ -4,13 +4,12 @@
 //! the triangles knows it as well, and all that looks for cones takes a quarter of the time there; its vertices are
 //! some of the mesh's own.
 
-use super::clean_up::{Cleaned, clean_up};
 use super::domain::Domain;
 use super::lay_out::lay_out_cleaned;
 use super::log::StageLog;
 use super::relaxed::RelaxedLayout;
 use super::start::repaired;
-use super::{MapOptions, MethodError, Start};
+use super::{MapOptions, MethodError, Start, lay_out_directly};
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::progress::{Stage, Watch, unless_cancelled};
 use crate::rounding::{Rounding, RoundingStats, RoundingStrategy, fix_holonomy};
@@ -18,6 +17,7 @@ use num_complex::Complex64;
 use seamstress_mesh::coarse::{Coarsening, coarsen};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Geometry, TriMesh, Vertex, VertexData};
+use seamstress_parallel::beside;
 use std::f64::consts::FRAC_PI_4;
 
 /// The part of the triangles that a coarser mesh has, and how many it has at least and at most.
@@ -30,6 +30,8 @@ const SPIKE: f64 = FRAC_PI_4;
 const BIAS: f64 = 0.2;
 /// Smaller meshes are as coarse as need be.
 const LEAST: usize = 2 * FEWEST;
+/// A layout has 0.75 to 1 times the excess energy of one of a coarser mesh with the same cones.
+const TRUST: f64 = 1.3;
 
 /// A relaxed layout with the cones of a coarser mesh.
 pub(super) struct Scouted {
@@ -78,9 +80,15 @@ pub(super) fn scout(
     if !is_worthwhile(domain, start, options) {
         return Ok(None);
     }
-    log.enter(Stage::Rounding, watch)?;
-    let found = find_cones(domain, options, log, watch)?;
-    let Some(Found { stats, index, cleaned }) = found else { return Ok(None) };
+    let coarse = beside(
+        // The fine mesh will need it, and no other work is as hard to share.
+        || {
+            domain.sectors.dissection();
+        },
+        || coarse_cones(domain, options, log, watch),
+    );
+    let Some(Coarse { stats, excess, index }) = coarse? else { return Ok(None) };
+    log.enter(Stage::Layout, watch)?;
     let (sectors, metric) = (&domain.sectors, &domain.metric);
     let matched = MatchedCut::with_indices(sectors, metric, unfolding.clone(), &index);
     let frames = vec![Complex64::ONE; domain.mesh().n_faces()];
@@ -88,11 +96,9 @@ pub(super) fn scout(
     let Ok(Rounding { start, stats }) = repaired(domain, placed) else { return Ok(None) };
     watch.pulse()?;
     let start = fix_holonomy(sectors, metric, start, None)?;
-    let cleaned = cleaned.on(start);
-    log.enter(Stage::Layout, watch)?;
-    let Some(layout) = lay_out_cleaned(domain, &cleaned, watch)? else { return Ok(None) };
+    let Some(layout) = lay_out_cleaned(domain, &start, watch)? else { return Ok(None) };
     log.count(layout.iterations);
-    Ok(Some(Scouted { stats, is_as_expected: cleaned.is_met_by(&layout), layout }))
+    Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))
 }
 
 fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bool {
@@ -105,23 +111,26 @@ fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bo
         && options.rounding.strategy == RoundingStrategy::ConeBias
 }
 
-/// The cones of a coarser mesh.
-struct Found {
+/// What is known of a coarser mesh.
+struct Coarse {
     /// Of its rounding.
     stats: RoundingStats,
-    /// As indices of all vertices of the mesh itself, quarters.
+    /// The excess energy of its layout.
+    excess: f64,
+    /// Its cones, as indices of all vertices of the mesh itself (quarters).
     index: VertexData<i32>,
-    /// Its matchings.
-    cleaned: Cleaned,
 }
 
-/// Looks for cones on a coarser mesh; none if there are no matchings there, or nothing to clean up.
-fn find_cones(
+/// Lays out a coarser mesh; none if it has no layout.
+///
+/// # Errors
+/// When the caller asks to stop.
+fn coarse_cones(
     domain: &Domain<'_>,
     options: &MapOptions,
     log: &mut StageLog,
     watch: &mut Watch<'_, '_>,
-) -> Result<Option<Found>, MethodError> {
+) -> Result<Option<Coarse>, MethodError> {
     let mesh = domain.mesh();
     let faces: Vec<[u32; 3]> = mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
     let n_faces = (SHARE * faces.len() as f64) as usize;
@@ -139,18 +148,14 @@ fn find_cones(
     let metric = geometry.metric(&coarse);
     let mut options = *options;
     options.rounding.cone_bias *= BIAS;
-    let options = &options;
-    let there = Domain::new(&coarse, geometry, &metric, EdgeSet::new(&coarse, []), options);
-    let rounded = Start::Mesh.rounding(&there, there.unfold(), options, watch);
-    let Ok(Ok(Rounding { start, stats })) = unless_cancelled(rounded)? else { return Ok(None) };
-    log.count(stats.layouts);
-    log.enter(Stage::CleanUp, watch)?;
-    let cleaned = clean_up(&there, &start, &Start::Mesh, options, watch)?;
-    let Some(cleaned) = cleaned else { return Ok(None) };
-    let found = cleaned.start.matched.sector_indices(&there.sectors, &there.metric);
+    let there = Domain::new(&coarse, geometry, &metric, EdgeSet::new(&coarse, []), &options);
+    let unfolding = there.unfold();
+    let laid_out = lay_out_directly(there, unfolding, &Start::Mesh, &options, log, watch);
+    let Ok((there, stats, layout)) = unless_cancelled(laid_out)? else { return Ok(None) };
+    let found = layout.layout.matched.sector_indices(&there.sectors, &there.metric);
     let mut index = VertexData::filled(mesh.n_vertices(), 0);
     vertices.iter().zip(found.iter()).for_each(|(&v, &k)| index[Vertex(v)] = k);
-    Ok(Some(Found { stats, index, cleaned }))
+    Ok(Some(Coarse { stats, excess: layout.excess(), index }))
 }
 
 fn of_vertices<T: Copy>(vertices: &[u32], all: &[T]) -> Vec<T> {
