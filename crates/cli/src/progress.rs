@@ -35,8 +35,11 @@ impl Bars {
         let is_current = |&(c, s, _): &(usize, Stage, ProgressBar)| (c, s) == (component, stage);
         if current.is_none() {
             let megabytes = progress.expected_memory as f64 / 1e6;
+            let seconds = progress.expected_time.as_secs_f64().max(1.0);
+            let line =
+                format!("takes about {seconds:.0} s on one thread, {megabytes:.0} MB of memory");
             // A terminal that cannot be written to is no reason to fail.
-            let _ = self.all.println(format!("takes about {megabytes:.0} MB of memory"));
+            let _ = self.all.println(line);
         }
         if !current.as_ref().is_some_and(is_current) {
             // The bars of many components would fill the screen.

@@ -35,6 +35,7 @@ pub use solution::{ComponentStats, MapSolution, StageStats};
 pub use start::Start;
 
 use crate::cut::Unfolding;
+use crate::layout::ladder::LayoutEffort;
 use crate::progress::{Stage, Watch};
 use certify::{ComponentMap, last_certified};
 use clean_up::clean_up;
@@ -65,7 +66,9 @@ fn parametrize(
     // Lay out and relax with the cones of a coarser mesh, found in a part of the time; where that is not as good as
     // expected, or where a coarser mesh would not do, directly.
     let scouted = scout(&domain, &unfolding, start, options, &mut log, watch)?;
-    let directly = |domain| lay_out_directly(domain, unfolding, start, options, &mut log, watch);
+    let effort = LayoutEffort::Thorough;
+    let directly =
+        |domain| lay_out_directly(domain, unfolding, effort, start, options, &mut log, watch);
     let (domain, rounding, relaxed) = match scouted {
         Some(scouted) => scouted.or_better(domain, directly)?,
         None => directly(domain)?,
@@ -92,13 +95,14 @@ fn parametrize(
     Ok(ComponentMap::new(domain, corner_uvs, rounding, route, log))
 }
 
-/// The relaxed layout with cones found on the mesh itself.
+/// The relaxed layout with cones found on the mesh itself; so much is tried for them as they were rounded.
 ///
 /// # Errors
 /// [`MethodError`].
 fn lay_out_directly<'m>(
     domain: Domain<'m>,
     unfolding: Unfolding,
+    effort: LayoutEffort,
     start: &Start,
     options: &MapOptions,
     log: &mut StageLog,
@@ -117,7 +121,7 @@ fn lay_out_directly<'m>(
     // distortion.
     log.enter(Stage::Layout, watch)?;
     let (domain, rounding, relaxed) =
-        lay_out(domain, rounding, cleaned.as_ref(), start, options, watch)?;
+        lay_out(domain, rounding, cleaned.as_ref(), effort, start, options, watch)?;
     log.count(relaxed.iterations);
     Ok((domain, rounding.stats, relaxed))
 }

@@ -1,6 +1,7 @@
 //! How work is run: progress, cancellation, limits of time and memory, threads.
 
 use crate::error::{Error, ErrorKind, Stage};
+use crate::expected::Expected;
 use crate::memory::Memory;
 use seamstress_parallel::with_threads;
 use seamstress_parametrize::progress::Progress as Step;
@@ -25,6 +26,9 @@ pub struct Progress {
     pub fraction: f64,
     /// Memory that the whole work is expected to take at most, bytes: an estimate from numbers of triangles and cells.
     pub expected_memory: u64,
+    /// Time that the whole work is expected to take on one thread with default options: a rough estimate, as measured on
+    /// one machine.
+    pub expected_time: Duration,
 }
 
 /// A switch that stops work from another thread. Clones share it.
@@ -103,14 +107,15 @@ impl Context {
         self
     }
 
-    /// Does work that takes about so much memory, on the threads of this context and under its watch.
+    /// Does work that is expected to take so much, on the threads of this context and under its watch.
     pub(crate) fn run<T: Send>(
         &self,
-        expected: Memory,
+        expected: Expected,
         work: impl FnOnce(&mut Watcher) -> Result<T, Error> + Send,
     ) -> Result<T, Error> {
-        if let Some(limit) = self.memory_limit.map(Memory).filter(|&limit| expected > limit) {
-            return Err(Error::too_large(expected, limit));
+        if let Some(limit) = self.memory_limit.map(Memory).filter(|&limit| expected.memory > limit)
+        {
+            return Err(Error::too_large(expected.memory, limit));
         }
         let mut watcher = Watcher { context: self.clone(), expected, stage: None, stop: None };
         self.on_threads(move || {
@@ -144,7 +149,7 @@ impl fmt::Debug for Context {
 /// Watches over one piece of work: passes progress on, and knows where and why it was stopped.
 pub(crate) struct Watcher {
     context: Context,
-    expected: Memory,
+    expected: Expected,
     stage: Option<Stage>,
     stop: Option<Stop>,
 }
@@ -163,7 +168,8 @@ impl Watcher {
             component: step.component,
             n_components: step.n_components,
             fraction: step.fraction,
-            expected_memory: self.expected.0,
+            expected_memory: self.expected.memory.0,
+            expected_time: self.expected.time,
         })
     }
 
@@ -174,7 +180,8 @@ impl Watcher {
             component: 0,
             n_components: 1,
             fraction: 0.0,
-            expected_memory: self.expected.0,
+            expected_memory: self.expected.memory.0,
+            expected_time: self.expected.time,
         };
         match self.see(progress) {
             ControlFlow::Continue(()) => Ok(()),

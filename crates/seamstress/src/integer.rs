@@ -191,7 +191,7 @@ impl Surface {
         options.validate()?;
         options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::auto()));
-        let made = self.context().run(self.memory_of_grid(options.size), |watcher| {
+        let made = self.context().run(self.expected_for_grid(options.size), |watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
             self.integer_parts(&asked, options, watcher, |selection, options, watcher| {
                 let surface = &selection.surface;
@@ -224,7 +224,7 @@ impl Surface {
         options.size.check_count(self.metric().side())?;
         let options = &options.clone().map(options.map.or_features(Features::none()));
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
-        let made = self.context().run(self.memory_of_grid(options.size), |watcher| {
+        let made = self.context().run(self.expected_for_grid(options.size), |watcher| {
             // Of all components, also of those that are left out.
             self.seamless_map(corner_uvs.clone(), certify)?;
             let asked = self.features(&options.map.features)?;

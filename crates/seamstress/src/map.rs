@@ -375,7 +375,7 @@ impl Surface {
     pub fn parametrize(&self, options: &MapOptions) -> Result<SeamlessMap, Error> {
         options.validate()?;
         let options = &options.or_features(Features::none());
-        let made = self.context().run(self.memory_of_map(), |watcher| {
+        let made = self.context().run(self.expected_for_map(), |watcher| {
             let asked = self.features(&options.features)?;
             let sized = self.prepared_for_textures(&asked, options)?;
             sized.direct_map(asked, options, options.to_method(), watcher)?.packed(options)

@@ -215,7 +215,7 @@ impl Surface {
     ) -> Result<SeamlessMap<OptimizeReport>, Error> {
         let mut settings = options.to_method(self)?;
         let corner_uvs = start.map(|(uvs, face_uvs)| self.corner_uvs(uvs, face_uvs)).transpose()?;
-        let made = self.context().run(self.memory_of_map(), |watcher| {
+        let made = self.context().run(self.expected_for_map(), |watcher| {
             let start = corner_uvs.map(|uvs| self.seamless_map(uvs, &options.certify()));
             let start = start.transpose()?;
             let asked = self.features(&options.features)?;

@@ -120,6 +120,11 @@ pub struct MapOptions {
         default_value_t = Self::default().corner_weight))]
     pub corner_weight: f64,
 
+    /// Take about half of the time, as for a preview: cones are looked for on a coarser mesh still, the mean distortion
+    /// stays a little above the least, and the largest (tau) is not polished
+    #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
+    pub fast: bool,
+
     /// Leave out the polish that lowers the largest distortion (tau)
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
     pub no_tau_polish: bool,
@@ -161,6 +166,7 @@ impl Default for MapOptions {
             cone_bias: rounding.cone_bias,
             cone_price: None,
             corner_weight: rounding.corner_weight,
+            fast: false,
             no_tau_polish: false,
             polish_time: None,
             max_energy_rise: PolishOptions::default().max_energy_rise,
@@ -279,7 +285,8 @@ impl MapOptions {
         options.alignment = self.align.unwrap_or(0.0);
         options.strict_features = self.features_strict;
         options.corner_angle = self.corner_angle;
-        options.polish = (!self.no_tau_polish).then_some(PolishOptions {
+        options.fast = self.fast;
+        options.polish = (!self.no_tau_polish && !self.fast).then_some(PolishOptions {
             max_energy_rise: self.max_energy_rise,
             time_limit: self.polish_time,
         });

@@ -234,7 +234,7 @@ impl Surface {
         options.size.check_count(self.metric().side())?;
         let options =
             &options.clone().map(options.map.or_features(Features::auto()).or_align(ALIGN));
-        let made = self.context().run(self.memory_of_grid(options.size), |watcher| {
+        let made = self.context().run(self.expected_for_grid(options.size), |watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
             let cell = options.size.to_quantize().cell(self.metric().side());
             let sized = self.sized(&asked, &options.map, cell)?;
@@ -290,7 +290,7 @@ impl Surface {
         options: &ExtractionOptions,
     ) -> Result<QuadMesh, Error> {
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
-        let made = self.context().run(self.memory_of_cells(&corner_uvs), |watcher| {
+        let made = self.context().run(self.expected_for_cells(&corner_uvs), |watcher| {
             let asked = self.features(features)?;
             let settings =
                 ExtractOptions { tolerance: options.tolerance, best_effort: options.best_effort };

@@ -272,6 +272,7 @@ fn work_that_needs_more_memory_than_allowed_is_refused_before_it_starts() {
     let seen = Arc::clone(&expected);
     let observed = torus().with_context(Context::new().observer(move |progress| {
         seen.store(progress.expected_memory, Ordering::Relaxed);
+        assert!((1..1000).contains(&progress.expected_time.as_millis()), "{progress:?}");
         ControlFlow::Continue(())
     }));
     observed.parametrize(&MapOptions::default()).unwrap();

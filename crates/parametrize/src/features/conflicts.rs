@@ -72,6 +72,9 @@ pub(crate) fn drop_conflicts(
     metric: &Metric,
     features: EdgeSet,
 ) -> (EdgeSet, Vec<ReleasedFeature>) {
+    if features.edges().is_empty() {
+        return (features, Vec::new());
+    }
     let angle = |h| dihedral_angle(mesh, positions, h).unwrap_or(0.0);
     let dihedral: HalfedgeData<f64> = mesh.halfedges().map(angle).collect();
     let flat = |h: &Halfedge| (mesh.twin(*h).is_none(), Ordered(dihedral[*h]));

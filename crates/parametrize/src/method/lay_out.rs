@@ -12,7 +12,7 @@ use crate::progress::{Watch, unless_cancelled};
 use crate::rounding::Rounding;
 
 /// The relaxed layout of cleaned matchings, if it is as good as their estimate; else the better one of it and that of the
-/// rounded matchings.
+/// rounded matchings, for which so much is tried.
 ///
 /// # Errors
 /// [`MethodError`].
@@ -20,20 +20,19 @@ pub(super) fn lay_out<'m>(
     domain: Domain<'m>,
     rounding: Rounding,
     cleaned: Option<&Cleaned>,
+    effort: LayoutEffort,
     start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(Domain<'m>, Rounding, RelaxedLayout), MethodError> {
     let Some(cleaned) = cleaned else {
-        return lay_out_rounded(domain, rounding, LayoutEffort::Thorough, start, options, watch);
+        return lay_out_rounded(domain, rounding, effort, start, options, watch);
     };
-    let without = match lay_out_cleaned(&domain, &cleaned.start, watch)? {
+    let without = match lay_out_cleaned(&domain, &cleaned.start, options, watch)? {
         Some(layout) if cleaned.is_met_by(&layout) => return Ok((domain, rounding, layout)),
         other => other,
     };
     let all = domain.features();
-    // With a layout at hand the other is worth no more effort than it took.
-    let effort = if without.is_some() { LayoutEffort::Brief } else { LayoutEffort::Thorough };
     let with = lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch);
     match (without, unless_cancelled(with)?) {
         // Neither is worth a feature.
@@ -54,6 +53,7 @@ pub(super) fn lay_out<'m>(
 pub(super) fn lay_out_cleaned(
     domain: &Domain<'_>,
     cleaned: &FramedCut,
+    options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
     // The last rung costs most, and what it finds is seldom as good as expected; along a guide more cones depend on it.
@@ -64,7 +64,7 @@ pub(super) fn lay_out_cleaned(
     let (sectors, metric) = (&domain.sectors, &domain.metric);
     let layout = ladder::lay_out(sectors, metric, cleaned, effort, watch);
     match unless_cancelled(layout)? {
-        Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), watch)?)),
+        Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), options, watch)?)),
         // As they were rounded along a guide, cones are far too many.
         Ok(Err(defects)) if domain.guide.is_some() => Err(MethodError::Defective(defects)),
         Ok(Err(_)) | Err(_) => Ok(None),
@@ -89,7 +89,7 @@ fn lay_out_rounded<'m>(
         let (sectors, metric) = (&domain.sectors, &domain.metric);
         let defects = match ladder::lay_out(sectors, metric, &rounding.start, effort, watch)? {
             Ok(layout) => {
-                let layout = relax(layout, domain.guide.as_ref(), watch)?;
+                let layout = relax(layout, domain.guide.as_ref(), options, watch)?;
                 return Ok((domain, rounding, layout));
             }
             Err(defects) => defects,

@@ -47,6 +47,9 @@ pub struct MapOptions {
     /// Whether a feature edge that cannot be aligned is an error ([`MapError::Released`](super::MapError::Released)) rather than a
     /// line in the result.
     pub strict_features: bool,
+    /// Whether to save time at the cost of some distortion, as for a preview: larger meshes have their cones looked for on
+    /// coarser ones still, and layouts stop short of the minimum.
+    pub fast: bool,
     /// The finish that lowers tau; none leaves the map of least energy.
     pub polish: Option<PolishOptions>,
     /// What to minimise in the end, instead of the compromise of mean and worst distortion that is made
@@ -65,6 +68,7 @@ impl Default for MapOptions {
             corner_angle: 45.0,
             alignment: 0.0,
             strict_features: false,
+            fast: false,
             polish: Some(PolishOptions::default()),
             objective: None,
             tolerance: Tolerance::default(),

@@ -11,6 +11,8 @@ use super::relaxed::RelaxedLayout;
 use super::start::repaired;
 use super::{MapOptions, MethodError, Start, lay_out_directly};
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
+use crate::field::Guide;
+use crate::layout::ladder::LayoutEffort;
 use crate::progress::{Stage, Watch, unless_cancelled};
 use crate::rounding::{Rounding, RoundingStats, RoundingStrategy, fix_holonomy};
 use num_complex::Complex64;
@@ -20,16 +22,32 @@ use seamstress_mesh::{Geometry, TriMesh, Vertex, VertexData};
 use seamstress_parallel::beside;
 use std::f64::consts::FRAC_PI_4;
 
-/// The part of the triangles that a coarser mesh has, and how many it has at least and at most.
-const SHARE: f64 = 0.25;
-const FEWEST: usize = 4000;
-const MOST: usize = 40_000;
+/// What part of the triangles a coarser mesh has, and how many at least and at most.
+struct Share {
+    share: f64,
+    fewest: usize,
+    most: usize,
+}
+
+const USUAL: Share = Share { share: 0.25, fewest: 4000, most: 40_000 };
+const FAST: Share = Share { share: 0.08, fewest: 2000, most: 20_000 };
+
+impl Share {
+    fn new(options: &MapOptions) -> Self {
+        if options.fast { FAST } else { USUAL }
+    }
+
+    /// The number of triangles of a mesh coarser than one of so many.
+    fn of(&self, faces: usize) -> usize {
+        ((self.share * faces as f64) as usize).clamp(self.fewest, self.most)
+    }
+}
 /// A vertex with more curvature than this (radians) is nearer to a cone than to none: it stays.
 const SPIKE: f64 = FRAC_PI_4;
 /// The bias against cones, as a part of the one asked for: a coarser mesh has fewer places for cones as it is.
 const BIAS: f64 = 0.2;
-/// Smaller meshes are as coarse as need be.
-const LEAST: usize = 2 * FEWEST;
+/// Triangles that a coarser mesh has for each cell, at least, where directions are followed.
+const LEAST_FACES: f64 = 2.0;
 /// A layout has 0.75 to 1 times the excess energy of one of a coarser mesh with the same cones.
 const TRUST: f64 = 1.3;
 
@@ -96,19 +114,34 @@ pub(super) fn scout(
     let Ok(Rounding { start, stats }) = repaired(domain, placed) else { return Ok(None) };
     watch.pulse()?;
     let start = fix_holonomy(sectors, metric, start, None)?;
-    let Some(layout) = lay_out_cleaned(domain, &start, watch)? else { return Ok(None) };
+    let start = match &domain.guide {
+        None => start,
+        // Now that the frames turn the right way round it is known which of its directions they are to follow.
+        Some(guide) => fix_holonomy(sectors, metric, start, Some(guide))?,
+    };
+    let Some(layout) = lay_out_cleaned(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
     Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))
 }
 
 fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bool {
-    domain.mesh().n_faces() >= LEAST
+    let n_faces = domain.mesh().n_faces();
+    // Smaller meshes are as coarse as need be.
+    n_faces >= 2 * Share::new(options).of(n_faces)
         && !domain.any_aligned()
-        && domain.guide.is_none()
+        && domain.geometry.directions.is_none()
+        && domain.guide.as_ref().is_none_or(|guide| is_seen(guide, domain, options))
         && domain.lengthening == 0.0
         && start.leaves_cones_free()
         && options.cone_price != Some(0.0)
         && options.rounding.strategy == RoundingStrategy::ConeBias
+}
+
+/// Whether a coarser mesh has the directions of a guide: its triangles are smaller than the cells.
+fn is_seen(guide: &Guide, domain: &Domain<'_>, options: &MapOptions) -> bool {
+    let n_cells = domain.metric.total_area() / (guide.cell * guide.cell);
+    let n_faces = Share::new(options).of(domain.mesh().n_faces());
+    n_faces as f64 >= LEAST_FACES * n_cells
 }
 
 /// What is known of a coarser mesh.
@@ -133,13 +166,12 @@ fn coarse_cones(
 ) -> Result<Option<Coarse>, MethodError> {
     let mesh = domain.mesh();
     let faces: Vec<[u32; 3]> = mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0)).collect();
-    let n_faces = (SHARE * faces.len() as f64) as usize;
+    let n_faces = Share::new(options).of(faces.len());
     let Geometry { positions, sizes, .. } = domain.geometry;
     let curvature = domain.metric.curvature(mesh);
     let is_spike = |&v: &Vertex| !mesh.is_boundary(v) && curvature[v].abs() > SPIKE;
     let spikes: Vec<u32> = mesh.vertices().filter(is_spike).map(|v| v.0).collect();
-    let Coarsening { vertices, faces, .. } =
-        coarsen(positions, &faces, n_faces.clamp(FEWEST, MOST), &spikes);
+    let Coarsening { vertices, faces, .. } = coarsen(positions, &faces, n_faces, &spikes);
     watch.pulse()?;
     let Ok(coarse) = TriMesh::from_faces(vertices.len(), &faces) else { return Ok(None) };
     let positions: Vec<[f64; 3]> = of_vertices(&vertices, positions);
@@ -150,7 +182,9 @@ fn coarse_cones(
     options.rounding.cone_bias *= BIAS;
     let there = Domain::new(&coarse, geometry, &metric, EdgeSet::new(&coarse, []), &options);
     let unfolding = there.unfold();
-    let laid_out = lay_out_directly(there, unfolding, &Start::Mesh, &options, log, watch);
+    // The barrier, which costs most, would tell less than it takes.
+    let effort = LayoutEffort::Brief;
+    let laid_out = lay_out_directly(there, unfolding, effort, &Start::Mesh, &options, log, watch);
     let Ok((there, stats, layout)) = unless_cancelled(laid_out)? else { return Ok(None) };
     let found = layout.layout.matched.sector_indices(&there.sectors, &there.metric);
     let mut index = VertexData::filled(mesh.n_vertices(), 0);

@@ -58,6 +58,7 @@ class MapOptions(RunOptions, total=False):
     cone_bias: float
     cone_price: float | None
     corner_weight: float
+    fast: bool
     no_tau_polish: bool
     polish_time: float | None
     max_energy_rise: float

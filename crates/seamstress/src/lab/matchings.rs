@@ -194,7 +194,7 @@ impl Surface {
         &self,
         options: &MatchingOptions,
     ) -> Result<ConsistentMatchings, Error> {
-        let made = self.context().run(self.memory_of_map(), |watcher| {
+        let made = self.context().run(self.expected_for_map(), |watcher| {
             let mesh = self.mesh();
             let given = options.read(self)?;
             let indices: VertexData<f64> = given.indices.iter().map(|&k| f64::from(k)).collect();

@@ -16,7 +16,7 @@ impl Surface {
     /// flips that are not allowed.
     pub fn parametrize_with(&self, options: &MethodOptions) -> Result<LaidOut, Error> {
         options.validate().map_err(|error| error.of(self.input()))?;
-        let made = self.context().run(self.memory_of_map(), |watcher| {
+        let made = self.context().run(self.expected_for_map(), |watcher| {
             if options.start.is_baseline() {
                 options.map.symmetry.refuse()?;
                 return self.lay_out_field(options, watcher);

@@ -61,6 +61,7 @@ impl Job {
                 "n_components": progress.n_components,
                 "fraction": progress.fraction,
                 "expected_memory": progress.expected_memory,
+                "expected_seconds": progress.expected_time.as_secs_f64(),
             })
         });
         let (state, error) = match &*outcome {

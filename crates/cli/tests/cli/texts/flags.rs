@@ -6,12 +6,12 @@ use crate::harness::Folder;
 #[rustfmt::skip]
 pub(super) const COMMANDS: [(&str, &[&str]); 12] = [
     ("map", &["--align-boundary", "--allow-flips", "--batch", "--cone-bias", "--cone-price", "--cones",
-        "--corner-weight", "--exact", "--features", "--features-strict", "--field", "--free-cones", "--from",
+        "--corner-weight", "--exact", "--features", "--features-strict", "--fast", "--field", "--free-cones", "--from",
         "--json", "--memory-limit", "--local-global", "--matching", "--max-energy-rise", "--method", "--no-tau-polish", "--nodes",
         "--objective", "--output", "--pictures", "--polish-time", "--quiet", "--repair", "--report", "--rounding",
         "--rounding-time", "--sing", "--symmetry", "--texture-angle", "--texture-period", "--texture-shift", "--threads",
         "--time-limit"]),
-    ("quad", &["--align-boundary", "--cone-bias", "--cone-price", "--edge-length", "--features", "--json", "--memory-limit",
+    ("quad", &["--align-boundary", "--cone-bias", "--cone-price", "--edge-length", "--fast", "--features", "--json", "--memory-limit",
         "--output", "--picture", "--quads", "--quiet", "--raw", "--repair", "--report", "--scale", "--smooth",
         "--symmetry", "--threads", "--time-limit"]),
     ("integer", &["--align-boundary", "--cone-bias", "--cone-price", "--edge-length", "--features",
