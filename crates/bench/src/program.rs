@@ -129,6 +129,12 @@ fn first_line(mesh: &Path, output: &Output) -> String {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Report(Value);
 
+impl From<Value> for Report {
+    fn from(json: Value) -> Self {
+        Self(json)
+    }
+}
+
 impl Report {
     /// Reads a report.
     ///

@@ -1,4 +1,4 @@
-//! Verification of maps by a script that shares no code with the program.
+//! Verification of maps, and judgement of quads, by scripts that share no code with the program.
 
 use crate::map_files::{write_map, write_mesh};
 use crate::meshes::Mesh;
@@ -22,6 +22,25 @@ pub(crate) struct Verdict {
     pub(crate) json: Value,
     /// What is wrong.
     pub(crate) fault: Option<String>,
+}
+
+/// What a Python script, called as `python3 SCRIPT --json --asked N SOURCE QUADS`, says of quads.
+///
+/// # Errors
+/// If it says nothing.
+pub(crate) fn judge(
+    script: &Path,
+    asked: f64,
+    source: &Path,
+    quads: &Path,
+) -> Result<Value, Box<dyn Error>> {
+    let mut command = Command::new("python3");
+    command.arg(script).args(["--json", "--asked", &asked.to_string()]).args([source, quads]);
+    let output = command.output()?;
+    serde_json::from_slice(&output.stdout).map_err(|_| {
+        let text = String::from_utf8_lossy(&output.stderr);
+        text.lines().last().unwrap_or("no message").into()
+    })
 }
 
 impl Verifier {

@@ -4,10 +4,13 @@
 mod common;
 
 use common::{mesh_of, surface, unwatched};
+use num_complex::Complex64;
 use seamstress_mesh::features::{EdgeSet, sharp_edges};
 use seamstress_mesh::soup::TriangleSoup;
-use seamstress_parametrize::energy::SymmetricDirichlet;
+use seamstress_mesh::{Face, FaceData};
+use seamstress_parametrize::energy::{DIRECTION_ENERGY, SymmetricDirichlet};
 use seamstress_parametrize::features::Sectors;
+use seamstress_parametrize::field::Guide;
 use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::newton::NewtonOptions;
 use seamstress_parametrize::layout::polish::{PolishOptions, Polished, polish};
@@ -57,6 +60,37 @@ fn tau_falls_and_the_energy_stays_within_its_bound() {
             assert!(after.symmetric_dirichlet <= most * (1.0 + 1e-14), "{max_energy_rise}");
             assert!(layout.defects(&Sectors::unaligned(&mesh), &found).none());
             assert!(after.tau <= before.tau * (1.0 + 1e-14));
+        }
+    }
+}
+
+#[test]
+fn directions_that_count_stay_within_the_bound_as_well() {
+    for soup in shapes() {
+        let (mesh, metric) = surface(&soup);
+        let (mut layout, y) = relaxed(&soup);
+        // Somewhat askew to the layout, here and there more than elsewhere.
+        let off = |f: Face| Complex64::from_polar(1.0, 0.3 * f64::from(f.0).sin());
+        let z = layout.expand(&y);
+        let seen = layout.problem().triangles().iter().map(|t| t.jacobian(&z).similar);
+        let rotation = seen.zip(mesh.faces()).map(|(s, f)| s / s.norm() * off(f)).collect();
+        let weight = FaceData::filled(mesh.n_faces(), 1.0);
+        let guide = Guide { rotation, weight, cell: metric.total_area().sqrt() / 20.0 };
+        layout.problem_mut().follow(&guide, DIRECTION_ENERGY);
+        let settle = NewtonOptions { max_iterations: 60, tolerance: 1e-9 };
+        let relaxed = unwatched(|watch| layout.minimize(y, &SymmetricDirichlet, &settle, watch));
+        let relaxed = relaxed.unwrap().y;
+        let total = |layout: &ExactLayout, y: &[f64]| {
+            let figures = layout.figures(y);
+            (figures.pull, figures.symmetric_dirichlet + figures.pull)
+        };
+        let before = total(&layout, &relaxed);
+        assert!(before.0 > 0.05, "{}", before.0);
+        for max_energy_rise in RISES {
+            let options = PolishOptions { max_energy_rise, time_limit: None };
+            let found = polished(&mut layout, &relaxed, &options).y;
+            let after = total(&layout, &found);
+            assert!(after.1 <= (1.0 + max_energy_rise) * before.1 * (1.0 + 1e-14));
         }
     }
 }

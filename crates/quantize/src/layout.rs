@@ -15,7 +15,7 @@ use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, TriMesh, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::cut::Cut;
-use seamstress_parametrize::energy::{SymmetricDirichlet, Triangle, triangles};
+use seamstress_parametrize::energy::{SymmetricDirichlet, Triangle, keep_directions, triangles};
 use seamstress_parametrize::layout::exact::ExactLayout;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::map::SeamlessMap;
@@ -44,7 +44,7 @@ pub(crate) struct SeamlessLayout<'a> {
 }
 
 impl<'a> SeamlessLayout<'a> {
-    /// Reads a seamless map of a connected mesh with its aligned edges.
+    /// Reads a seamless map of a connected mesh with its aligned edges; its directions count by `alignment`.
     ///
     /// # Errors
     /// [`QuantizationFailure::Unreadable`] if the map flips when its seams are closed exactly, and where the observer
@@ -54,6 +54,7 @@ impl<'a> SeamlessLayout<'a> {
         metric: &Metric,
         map: &SeamlessMap,
         aligned: &EdgeSet,
+        alignment: f64,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Self, QuantizationFailure> {
         let (layout, mut y) = ExactLayout::from_map(mesh, metric, map)?;
@@ -65,7 +66,8 @@ impl<'a> SeamlessLayout<'a> {
         let space = IntegerSpace::new(mesh, &cut, &matching, &needs)?;
         let (coordinates, y) = space.read(&z);
         watch.pulse()?;
-        let triangles = triangles(mesh, metric, &cut);
+        let mut triangles = triangles(mesh, metric, &cut);
+        keep_directions(&mut triangles, &z, alignment);
         let problem = LayoutProblem::with_held(space.linear()?, triangles, space.n_free())?;
         let aligned = aligned.vertex_pairs(mesh);
         let unit = metric.unit;

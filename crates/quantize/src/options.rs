@@ -52,6 +52,10 @@ pub struct QuantizeOptions {
     pub size: GridSize,
     /// How the integers are chosen.
     pub rounding: RoundingMethod,
+    /// How much the directions of the map count against its lengths, from 0 to 1: what [`MapOptions::alignment`] was.
+    ///
+    /// [`MapOptions::alignment`]: seamstress_parametrize::MapOptions::alignment
+    pub alignment: f64,
     /// Tolerance of the certificate of the seamless map in it; what is integral is so exactly.
     pub tolerance: Tolerance,
     /// Tolerance of the map it is made from, and of the alignment there.
@@ -69,6 +73,7 @@ impl Default for QuantizeOptions {
         Self {
             size: GridSize::Quads(5000.0),
             rounding: RoundingMethod::default(),
+            alignment: 0.0,
             tolerance: Tolerance::default(),
             given: Tolerance::default(),
             effort: EFFORT,

@@ -131,8 +131,9 @@ impl<'a> ComponentSearch<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<Self, QuantizationFailure> {
         let clock = Instant::now();
-        let mut read =
-            |metric: &Metric| SeamlessLayout::new(&piece.mesh, metric, map, aligned, watch);
+        let mut read = |metric: &Metric| {
+            SeamlessLayout::new(&piece.mesh, metric, map, aligned, options.alignment, watch)
+        };
         let opened = metric.opened(&piece.mesh);
         let mut layout = match read(opened.as_ref().unwrap_or(metric)) {
             // Triangles too thin for arithmetic open up where every edge is longer.

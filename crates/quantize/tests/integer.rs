@@ -299,3 +299,33 @@ fn bad_sizes_and_cancelling() {
         quantize(&mesh, &soup.positions, &map, &EdgeSet::new(&mesh, []), &options, &mut stop);
     assert!(matches!(stopped, Err(QuantizeError::Cancelled(_))));
 }
+
+#[test]
+fn a_map_keeps_its_directions_where_they_count() {
+    let soup = testkit::bumpy(&testkit::torus(24, 16, 2.0, 0.8), 0.1, 1);
+    let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
+    let turned = |alignment| {
+        let options =
+            QuantizeOptions { size: GridSize::Quads(300.0), alignment, ..Default::default() };
+        let aligned = EdgeSet::new(&mesh, []);
+        let made = quantize(&mesh, &soup.positions, &map, &aligned, &options, &mut go_on).unwrap();
+        let faces = made.map.corner_uvs().chunks(3).zip(map.corner_uvs().chunks(3));
+        let turns = faces.map(|(to, from)| {
+            // The best rotation of the sides, up to quarters.
+            let side = |uvs: &[[f64; 2]], k: usize| [0, 1].map(|i| uvs[(k + 1) % 3][i] - uvs[k][i]);
+            let (mut along, mut across) = (0.0, 0.0);
+            for k in 0..3 {
+                let ([a, b], [c, d]) = (side(from, k), side(to, k));
+                along += a * c + b * d;
+                across += a * d - b * c;
+            }
+            let angle = f64::atan2(across, along).to_degrees().rem_euclid(90.0);
+            angle.min(90.0 - angle)
+        });
+        turns.sum::<f64>() / mesh.n_faces() as f64
+    };
+    let [free, kept] = [0.0, 1.0].map(turned);
+    assert!(kept < 0.8 * free, "{free} degrees, and {kept} where directions count");
+}

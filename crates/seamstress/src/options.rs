@@ -372,7 +372,13 @@ impl IntegerMapOptions {
             GridRounding::Constrained => quantize::RoundingMethod::Constrained,
             GridRounding::Greedy => quantize::RoundingMethod::Greedy,
         };
-        quantize::QuantizeOptions { size: self.size.to_quantize(), rounding, ..Default::default() }
+        // Directions that are given count fully.
+        let alignment = match self.map.directions.is_empty() {
+            true => self.map.align.unwrap_or(0.0),
+            false => 1.0,
+        };
+        let size = self.size.to_quantize();
+        quantize::QuantizeOptions { size, rounding, alignment, ..Default::default() }
     }
 }
 

@@ -8,9 +8,9 @@ use crate::markdown::Table;
 use crate::meshes::{Selection, name};
 use crate::output::{Section, progress};
 use crate::program::{Outcome, Program};
+use crate::verify::judge;
 use clap::value_parser;
 use metric::{JUDGED_METRICS, MAP_METRICS, Metric, QUAD_METRICS};
-use serde_json::Value;
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -233,17 +233,6 @@ impl Pair {
         }));
         cells
     }
-}
-
-/// What a script says of quads.
-fn judge(script: &Path, asked: f64, source: &Path, quads: &Path) -> Result<Value, Box<dyn Error>> {
-    let mut command = std::process::Command::new("python3");
-    command.arg(script).args(["--json", "--asked", &asked.to_string()]).args([source, quads]);
-    let output = command.output()?;
-    serde_json::from_slice(&output.stdout).map_err(|_| {
-        let text = String::from_utf8_lossy(&output.stderr);
-        text.lines().last().unwrap_or("no message").into()
-    })
 }
 
 fn change(old: String, new: String) -> String {

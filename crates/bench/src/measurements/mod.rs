@@ -3,6 +3,7 @@
 mod collection;
 mod conic;
 mod consistency;
+mod direction;
 mod factorisations;
 mod features;
 mod fields;
@@ -35,6 +36,7 @@ pub enum Measurement {
     Features(features::Args),
     Integer(integer::Args),
     Quads(quads::Args),
+    Direction(direction::Args),
     Sizes(sizes::Args),
     Fields(fields::Args),
     Methods(methods::Args),
@@ -60,6 +62,7 @@ impl Measurement {
             Self::Features(args) => features::measure(args),
             Self::Integer(args) => integer::measure(args),
             Self::Quads(args) => quads::measure(args),
+            Self::Direction(args) => direction::measure(args),
             Self::Sizes(args) => sizes::measure(args),
             Self::Fields(args) => fields::measure(args),
             Self::Methods(args) => methods::measure(args),

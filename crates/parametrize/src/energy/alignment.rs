@@ -1,8 +1,18 @@
 //! The pull of a triangle towards wanted directions.
 
 use super::{Jacobian, Triangle};
-use crate::quarter::nearest_quarter;
+use crate::quarter::{direction, nearest_quarter};
 use num_complex::Complex64;
+
+/// Mean energy of a map that lies at 45 degrees to directions that count fully: three times what an isometry has.
+pub const DIRECTION_ENERGY: f64 = 12.0;
+
+/// Pulls triangles towards the directions that they have in a layout, as those of a guide that count by `strength`.
+pub fn keep_directions(triangles: &mut [Triangle], z: &[Complex64], strength: f64) {
+    for t in triangles {
+        t.wanted = direction(t.jacobian(z).similar) * (DIRECTION_ENERGY * strength);
+    }
+}
 
 /// `weight (j01^2 + j10^2)` of the Jacobian seen from the nearest of four wanted rotations: zero when the wanted directions go
 /// to the axes, whatever the lengths along them; `2 weight sin^2 x` for a rotation by x from there.

@@ -9,7 +9,7 @@ mod jacobian;
 mod triangle;
 mod untangling;
 
-pub use alignment::Alignment;
+pub use alignment::{Alignment, DIRECTION_ENERGY, keep_directions};
 pub use bounded_dilatation::BoundedDilatation;
 pub use dirichlet::SymmetricDirichlet;
 pub use distance::{Arap, Asap, Guarded};

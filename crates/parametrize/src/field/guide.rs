@@ -13,6 +13,9 @@ use seamstress_mesh::{Face, FaceData, Geometry, Metric, TriMesh};
 
 /// Difference of the principal curvatures, times the length of a cell, at which directions count half.
 const HALF_ANISOTROPY: f64 = 0.15;
+/// Cells are this part of the side of a surface at least where directions are weighed: some thousand. Finer ones need them no
+/// less.
+pub(crate) const LEAST_CELL: f64 = 0.02;
 /// Curvature is averaged over this part of a cell.
 const RADIUS: f64 = 0.5;
 /// The guide is smoothed over this part of a cell where directions count fully.
@@ -35,7 +38,8 @@ pub struct Guide {
 
 impl Guide {
     /// The principal directions of a surface at the size of a cell, as far as they are certain: with `a` the difference of
-    /// the principal curvatures times the cell, they count `strength a^2 / (a^2 + 0.15^2)`.
+    /// the principal curvatures times the cell, they count `strength a^2 / (a^2 + 0.15^2)`; there cells are a fiftieth of the
+    /// side of the surface at least.
     ///
     /// Curvature is that of the slit surface: creases that are aligned bend nothing.
     /// Fourth powers of the directions are smoothed by one linear solve (after Knöppel et al. 2013); beside aligned
@@ -56,10 +60,11 @@ impl Guide {
             slit.vertices().map(|s| geometry.positions[sectors.vertex(s).at()]).collect();
         let bent = curvature(slit, &positions, metric, RADIUS * cell)?;
         let bent: FaceData<Complex64> = bent.iter().map(|bent| bent.anisotropy).collect();
+        let reach = cell.max(LEAST_CELL * metric.total_area().sqrt());
         let certainty = |(f, half): (Face, &Complex64)| {
             // Lengths of edges are those of the surface, areas count cells.
             let size = geometry.size(slit.face_vertices(f).map(|s| sectors.vertex(s)));
-            let a = 2.0 * half.norm() * cell / size;
+            let a = 2.0 * half.norm() * reach / size;
             a * a / (a * a + HALF_ANISOTROPY * HALF_ANISOTROPY)
         };
         let mut weight: FaceData<f64> = match strength > 0.0 {

@@ -26,6 +26,7 @@ pub use extract::{ExtractError, extract, map_frames, map_indices};
 pub(crate) use frames_of_matchings::frames_of;
 pub use frames_of_matchings::{smooth_frames, spectral_frames};
 pub use guide::Guide;
+pub(crate) use guide::LEAST_CELL;
 pub use homology::{DualLoop, Homology, NodeIndices};
 pub use lift::{LiftError, lift};
 pub use matched::{ResidualFieldError, matched_cut, residual_field};

@@ -95,10 +95,10 @@ struct Candidate {
 
 impl Candidate {
     fn new(problem: &LayoutProblem, y: &[f64], z: &[Complex64]) -> Self {
-        let Figures { scale, symmetric_dirichlet, tau } =
+        let Figures { scale, symmetric_dirichlet, pull, tau } =
             Figures::of_layout(problem.triangles(), z);
         let y = y.iter().map(|y| scale * y).collect();
-        Self { y, scale, energy: symmetric_dirichlet, tau }
+        Self { y, scale, energy: symmetric_dirichlet + pull, tau }
     }
 }
 

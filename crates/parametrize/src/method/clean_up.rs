@@ -15,6 +15,8 @@ const MAP_DEVIATION: f64 = 1.5;
 /// the cells around it whatever their size, and takes room from its neighbours.
 const QUAD_PRICE: f64 = 0.0015;
 const QUAD_CELLS: f64 = 4.0;
+/// Prices count so many times along a guide, after which there are more cones than a smooth map needs.
+const GUIDED: f64 = 2.0;
 /// Spikes that are small against the cells may be flattened.
 const QUAD_DEVIATION: f64 = 3.5;
 /// A layout has 0.65 to 1.2 times the excess energy estimated on most meshes; far more on those with thin blades, or with
@@ -46,7 +48,11 @@ impl CleanUpTerms {
                 }
             }
         };
-        let price = options.cone_price.unwrap_or(usual.price);
+        let usual_price = match domain.guide {
+            None => usual.price,
+            Some(_) => GUIDED * usual.price,
+        };
+        let price = options.cone_price.unwrap_or(usual_price);
         let is_wanted = price > 0.0 && start.leaves_cones_free();
         is_wanted.then_some(Self { price, ..usual })
     }

@@ -29,7 +29,10 @@ pub(super) fn lay_out<'m>(
         return lay_out_rounded(domain, rounding, effort, start, options, watch);
     };
     let without = match lay_out_cleaned(&domain, &cleaned.start, options, watch)? {
-        Some(layout) if cleaned.is_met_by(&layout) => return Ok((domain, rounding, layout)),
+        // The estimate knows nothing of what directions cost.
+        Some(layout) if domain.guide.is_some() || cleaned.is_met_by(&layout) => {
+            return Ok((domain, rounding, layout));
+        }
         other => other,
     };
     let all = domain.features();

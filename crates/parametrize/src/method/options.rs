@@ -1,7 +1,7 @@
 //! Settings of the direct method.
 
 use crate::features::{CornerRule, LARGEST_INDEX, Sectors};
-use crate::field::Guide;
+use crate::field::{Guide, LEAST_CELL};
 use crate::layout::objective::Objective;
 use crate::layout::polish::PolishOptions;
 use crate::map::Tolerance;
@@ -25,8 +25,6 @@ pub enum Purpose {
 
 /// A component has no fewer cells than this, however small it is: its cells are smaller then.
 pub(super) const FEWEST_CELLS: f64 = 24.0;
-/// Directions for textures are those over this part of the side of a component, as for some thousand quads.
-const TEXTURE_CELL: f64 = 0.02;
 
 /// Settings of the direct method.
 #[derive(Debug, Clone, Copy)]
@@ -95,7 +93,8 @@ impl MapOptions {
     ) -> Option<Guide> {
         let side = metric.total_area().sqrt();
         let cell = match self.purpose {
-            Purpose::Texture => TEXTURE_CELL * side,
+            // Directions for textures are those for some thousand quads.
+            Purpose::Texture => LEAST_CELL * side,
             Purpose::Quads { edge_length } => {
                 (edge_length / metric.unit).min(side / FEWEST_CELLS.sqrt())
             }

@@ -1,7 +1,7 @@
 //! From a flip-free layout to one of low distortion.
 
 use super::MapOptions;
-use crate::energy::SymmetricDirichlet;
+use crate::energy::{DIRECTION_ENERGY, SymmetricDirichlet};
 use crate::field::Guide;
 use crate::layout::ladder::SeamlessLayout;
 use crate::layout::newton::NewtonOptions;
@@ -13,9 +13,6 @@ use crate::progress::{SolveError, Watch};
 const TOLERANCE: f64 = 1e-5;
 /// The same where time is to be saved: half of the iterations.
 const FAST_TOLERANCE: f64 = 1e-3;
-
-/// Mean energy of a map that lies at 45 degrees to directions that count fully: three quarters of what an isometry has.
-const GUIDE_ENERGY: f64 = 3.0;
 
 /// A layout of minimum mean symmetric Dirichlet energy, at its best scale.
 pub(super) struct RelaxedLayout {
@@ -43,7 +40,7 @@ pub(super) fn relax(
     watch: &mut Watch<'_, '_>,
 ) -> Result<RelaxedLayout, SolveError> {
     if let Some(guide) = guide {
-        layout.space.problem_mut().follow(guide, GUIDE_ENERGY);
+        layout.space.problem_mut().follow(guide, DIRECTION_ENERGY);
     }
     let tolerance = if options.fast { FAST_TOLERANCE } else { TOLERANCE };
     let newton = NewtonOptions { max_iterations: 40, tolerance };

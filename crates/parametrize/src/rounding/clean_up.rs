@@ -66,7 +66,9 @@ const TOGETHER: usize = 4;
 const STANDING: f64 = 0.5;
 /// A unit of index turns the directions on one side of its way by a quarter. Where they count fully that costs so many prices
 /// of a cone for a cell of the way.
-const TENSION: f64 = 1.2;
+const TENSION: f64 = 0.7;
+/// A pair that cancels over fewer cells turns an area in place of a strip.
+const STRIP_CELLS: f64 = 2.5;
 /// Mean symmetric Dirichlet energy that a move has to gain: a part in 500 of the price of a cone, or cones walk to
 /// and fro.
 const MINIMUM_GAIN: f64 = 1e-6;
@@ -217,10 +219,18 @@ impl<'a> CleanUp<'a> {
         f64::from(after.abs() - before.abs()) * tension[road.halfedge]
     }
 
+    /// The part of the toll on a way that directions really cost.
+    fn charge(&self, s: Vertex, b: Vertex, toll: f64) -> f64 {
+        let cancels = self.excess[s].signum() * self.excess[b] < 0;
+        let strip = TENSION * self.options.price * STRIP_CELLS;
+        if cancels && toll > 0.0 { toll * (toll / strip).min(1.0) } else { toll }
+    }
+
     /// What is gained when a unit of the cone at `s` goes to `b` for a toll.
     fn profit(&self, s: Vertex, b: Vertex, toll: f64) -> f64 {
         let sign = self.excess[s].signum();
-        self.budget(s, b) - self.surrogate.change(sign, [s, b], &self.reach[&s].response) - toll
+        let change = self.surrogate.change(sign, [s, b], &self.reach[&s].response);
+        self.budget(s, b) - change - self.charge(s, b, toll)
     }
 
     /// Whether a unit of the cone at `s` may go to `b`.
