@@ -147,10 +147,14 @@ impl Map<'_> {
         }
     }
 
-    /// Whether edges turn at a vertex: two of them end there, with a sector that is not straight.
+    /// Whether edges turn at a vertex: two of them end there, with a sector that is not straight, or with more than one at a
+    /// boundary, which then turns back.
     pub(crate) fn is_turning_point(&self, vertex: u32, edges: &Edges) -> bool {
-        let turns = |sector: &Sector| !sector.is_free && self.quarters_of(sector).round() != 2.0;
-        self.edges_around(vertex, edges) > 1 && self.sectors(vertex, edges).iter().any(turns)
+        let sectors = self.sectors(vertex, edges);
+        let between: Vec<&Sector> = sectors.iter().filter(|sector| !sector.is_free).collect();
+        let turns = between.iter().any(|sector| self.quarters_of(sector).round() != 2.0);
+        let turns_back = self.mesh.is_boundary(vertex) && between.len() > 1;
+        self.edges_around(vertex, edges) > 1 && (turns || turns_back)
     }
 
     /// How many edges of a set end at a vertex.

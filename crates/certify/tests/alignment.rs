@@ -7,7 +7,9 @@
 mod meshes;
 
 use meshes::{SeamlessMap, mesh_of};
-use seamstress_certify::{Alignment, AlignmentTolerance, Tolerance, Violation};
+use seamstress_certify::{
+    Alignment, AlignmentTolerance, IntegralTolerance, Map, Tolerance, Violation,
+};
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_testkit::{cube, disk_grid, fan};
@@ -202,5 +204,27 @@ fn size_does_not_matter() {
         assert_eq!((found.exact_sides, found.sectors_by_quarters[&1]), (16, 4));
         assert!(found.sector_error < 1e-14);
         assert!(check(&map, &[[6, 12]]).is_err());
+    }
+}
+
+#[test]
+fn a_slit_ends_at_a_grid_point_also_where_an_edge_goes_straight_on() {
+    // Four triangles around vertex 0 at the tip of a slit along -x, whose sides end at 1 and 5.
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]];
+    let edges = [[0, 1], [0, 3], [0, 5]];
+    for (tip, is_right) in [(0.0, true), (0.5, false)] {
+        let at = [[tip, 0.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
+        let uvs: Vec<[f64; 2]> = faces.as_flattened().iter().map(|&v| at[v]).collect();
+        let faces = faces.map(|face| face.map(|v| v as u32));
+        let map = Map::new(6, &faces, &uvs).unwrap();
+        let found =
+            map.integers(&edges, IntegralTolerance::EXACT).map(|found| found.integral_corners);
+        match is_right {
+            true => assert_eq!(found.unwrap(), 1),
+            false => assert!(matches!(
+                found.unwrap_err().0[..],
+                [Violation::FractionalCorner { vertex: 0, .. }]
+            )),
+        }
     }
 }

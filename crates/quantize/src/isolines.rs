@@ -3,7 +3,7 @@
 use crate::base::Base;
 use crate::gauss::{Form, Gauss, Overflow, add_scaled, scaled};
 use num_complex::Complex64;
-use seamstress_mesh::features::{EdgeSet, sectors};
+use seamstress_mesh::features::{EdgeSet, Sector, sectors};
 use seamstress_mesh::{Halfedge, TriMesh, VertexData};
 use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_2;
@@ -22,11 +22,15 @@ pub fn turning_points(
         ((position(h.next()) - at).conj() * (position(h.prev()) - at)).arg()
     };
     let turns = |v| {
-        aligned.around(mesh, v).nth(1).is_some()
-            && sectors(mesh, aligned, v).iter().any(|sector| {
-                let quarters = sector.corners.iter().map(angle).sum::<f64>() / FRAC_PI_2;
-                !sector.is_free && quarters.round() != 2.0
-            })
+        let sectors = sectors(mesh, aligned, v);
+        let is_straight = |sector: &Sector| {
+            (sector.corners.iter().map(angle).sum::<f64>() / FRAC_PI_2).round() == 2.0
+        };
+        let is_between = |sector: &&Sector| !sector.is_free;
+        // Two straight sectors at a boundary are the tip of a slit, and an edge that goes on from it.
+        let turns_back = mesh.is_boundary(v) && sectors.iter().filter(is_between).count() > 1;
+        let bends = sectors.iter().filter(is_between).any(|sector| !is_straight(sector));
+        aligned.around(mesh, v).nth(1).is_some() && (bends || turns_back)
     };
     mesh.vertices().map(turns).collect()
 }
@@ -203,4 +207,31 @@ pub fn part(form: &Form, coordinate: u32) -> Form {
         [(2 * v, re), (2 * v + 1, im)]
     });
     parts.filter(|(_, c)| *c != 0).map(|(k, re)| (k, Gauss { re, im: 0 })).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use seamstress_mesh::Vertex;
+
+    /// Four triangles around vertex 0 at the tip of a slit along `-x`, whose sides end at 1 and 5.
+    fn slit() -> (TriMesh, [Complex64; 6]) {
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]];
+        let at = [[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
+        (TriMesh::from_faces(6, &faces).unwrap(), at.map(|[u, v]| Complex64::new(u, v)))
+    }
+
+    #[test]
+    fn a_slit_ends_at_a_grid_point_also_where_a_feature_goes_straight_on() {
+        let (mesh, at) = slit();
+        let tip_turns = |others: &[u32]| {
+            let edges = others.iter().map(|&v| mesh.edge_between(Vertex(0), Vertex(v)).unwrap());
+            let aligned = EdgeSet::new(&mesh, edges);
+            turning_points(&mesh, &aligned, |h| at[mesh.origin(h).at()])[Vertex(0)]
+        };
+        assert!(tip_turns(&[1, 5]));
+        assert!(tip_turns(&[1, 3, 5]));
+        // One side of the slit alone, or with what goes straight on, does not turn.
+        assert!(!tip_turns(&[1]) && !tip_turns(&[1, 3]));
+    }
 }
