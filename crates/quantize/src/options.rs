@@ -60,13 +60,13 @@ pub struct QuantizeOptions {
     pub tolerance: Tolerance,
     /// Tolerance of the map it is made from, and of the alignment there.
     pub given: Tolerance,
-    /// Passes of roundings, of usual size, that a component is worth on all grids. When they are spent, the best map so far
-    /// is the result.
+    /// Work that a component is worth on all grids, in passes of roundings of usual size; what moves along paths take counts
+    /// as so many of these. When it is spent, the best map so far is the result.
     pub effort: usize,
 }
 
-/// Passes of roundings that a component is worth: several times what the hardest meshes measured took.
-const EFFORT: usize = 500;
+/// Work that a component is worth: several times what the hardest meshes measured took to a first map.
+const EFFORT: usize = 250;
 
 impl Default for QuantizeOptions {
     fn default() -> Self {

@@ -13,13 +13,19 @@ use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
 
 /// The number of quads asked for is met when it is this close.
-const CLOSE_ENOUGH: f64 = 0.02;
+const CLOSE_ENOUGH: f64 = 0.04;
 /// Cell sizes tried to meet it.
 const MOST_SIZES: usize = 4;
 /// A number further off is worth up to as many sizes again, while they get better.
 const FAR_OFF: f64 = 0.05;
 /// Where a number is further off, a caller may want another map.
 const TOO_FAR_OFF: f64 = 0.1;
+/// So many times the cells asked for are no matter of their size if they do not follow it by this power of their area: the
+/// caller is asked before more sizes are tried.
+const FAR_TOO_MANY: f64 = 1.5;
+const FOLLOWING: f64 = 0.5;
+/// The part of the work that a component is worth that is spent on further sizes.
+const SIZES_SHARE: f64 = 0.2;
 /// Cells of a size that is no better are followed by ones on the other side of the best, nearer by this power.
 const NEARER: f64 = 0.7;
 /// Most that a cell is lengthened or shortened by at once: where cones are dense, the count hardly follows the size.
@@ -39,6 +45,9 @@ pub struct Quantization {
     pub cell: f64,
     /// Cell sizes tried to meet a number of quads.
     pub sizes_tried: usize,
+    /// Pairs of vertices with lines between them that are much shorter than a cell, where these are why a number of quads is
+    /// missed and the caller would rather have another map.
+    pub crowded: Vec<[u32; 2]>,
     /// One entry per connected component, in order of first faces.
     pub components: Vec<QuantizationStats>,
 }
@@ -108,7 +117,7 @@ pub fn quantize_deciding<'a>(
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };
     all.read(geometry, map, aligned, options)?;
-    let Sized { cell, placements, tried, .. } = all.meet(options.size)?;
+    let (Sized { cell, placements, tried, .. }, crowded) = all.meet(options)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
     for ((piece, search), placement) in pieces.iter().zip(&all.searches).zip(placements) {
@@ -122,7 +131,7 @@ pub fn quantize_deciding<'a>(
     let after = distortion(mesh, &metric, &corner_uvs);
     let map = IntegerGridMap::certify_aligned(mesh, corner_uvs, &pairs, &options.tolerance)?;
     let (distortion, sizes_tried, components) = (after, tried, stats);
-    Ok(Quantization { map, distortion, before, cell, sizes_tried, components })
+    Ok(Quantization { map, distortion, before, cell, sizes_tried, crowded, components })
 }
 
 /// All components on cells of one size.
@@ -187,13 +196,18 @@ impl<'p> Components<'p, '_, '_> {
 
     /// Meets the size asked for: a number of quads by changing the size of the cells by what it is off; where that was
     /// no better, on the other side of the best size, since where cones are dense the number does not always fall when
-    /// cells grow.
-    fn meet(&mut self, size: GridSize) -> Result<Sized, QuantizeError> {
+    /// cells grow. Names the lines for which the caller would rather have another map.
+    fn meet(&mut self, options: &QuantizeOptions) -> Result<(Sized, Vec<[u32; 2]>), QuantizeError> {
+        let (size, most_work) = (options.size, SIZES_SHARE * options.effort as f64);
         let side = self.searches.iter().map(ComponentSearch::side).fold(0.0, f64::hypot);
         let mut cell = size.cell(side);
         let mut best: Option<Sized> = None;
+        let (mut crowded, mut last, mut first_work) = (Vec::new(), None, 0.0);
         for tried in 1..=2 * MOST_SIZES {
             let placements = self.place(cell)?;
+            if tried == 1 {
+                first_work = self.work();
+            }
             let quads: f64 = placements.iter().map(|p| p.quads).sum();
             let ratio = match size {
                 GridSize::Quads(asked) => quads / asked,
@@ -204,37 +218,51 @@ impl<'p> Components<'p, '_, '_> {
             if is_better {
                 best = Some(Sized { cell, placements, off, tried });
             }
+            let follows = |(larger, before): (f64, f64)| {
+                (before / ratio).ln() > FOLLOWING * 2.0 * f64::ln(larger)
+            };
+            if ratio > FAR_TOO_MANY && !last.is_none_or(follows) {
+                crowded = self.crowded(cell);
+            }
             if let Some(best) = &mut best {
                 best.tried = tried;
                 let is_worth_more = tried < MOST_SIZES || (is_better && off > FAR_OFF);
-                if off < CLOSE_ENOUGH || !is_worth_more {
+                let is_over = !crowded.is_empty() || self.work() > first_work + most_work;
+                if off < CLOSE_ENOUGH || !is_worth_more || is_over {
                     break;
                 }
-                cell = match is_better {
+                let next = match is_better {
                     true => cell * ratio.sqrt().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE),
                     false => best.cell * (best.cell / cell).powf(NEARER),
                 };
+                last = Some((next / cell, ratio));
+                cell = next;
             }
         }
         let best = best.ok_or(QuantizeError::BadSize)?;
-        if best.off > TOO_FAR_OFF {
-            self.reconsider(best.cell)?;
+        if best.off > TOO_FAR_OFF && crowded.is_empty() {
+            crowded = self.crowded(best.cell);
         }
-        Ok(best)
+        Ok((best, crowded))
     }
 
-    /// Asks the caller whether to go on where lines much shorter than a cell are why a number of quads is missed.
-    fn reconsider(&mut self, cell: f64) -> Result<(), QuantizeError> {
-        let mut failed = Vec::new();
-        for (k, search) in self.searches.iter_mut().enumerate() {
+    /// The work done on the component that took most.
+    fn work(&self) -> f64 {
+        self.searches.iter().map(ComponentSearch::work).fold(0.0, f64::max)
+    }
+
+    /// The lines much shorter than a cell of components for which the caller would rather have another map.
+    fn crowded(&mut self, cell: f64) -> Vec<[u32; 2]> {
+        let mut crowded = Vec::new();
+        for search in &mut self.searches {
             if let Some(cause) = search.short_lines(cell)
                 && !self.decisions.goes_on(&cause)
+                && let QuantizationFailure::TooCoarse { pairs, .. } = cause
             {
-                let face = self.pieces[k].faces[0].0;
-                failed.push(FailedComponent { component: k, face, cause });
+                crowded.extend(pairs);
             }
         }
-        if failed.is_empty() { Ok(()) } else { Err(QuantizeError::Components(failed)) }
+        crowded
     }
 
     /// All components on cells of one size, side by side.

@@ -54,6 +54,8 @@ const REFINEMENT: f64 = 1.1;
 const REFINEMENTS: [i32; 13] = [1, 2, 3, 4, 5, 6, 8, 11, 14, 18, 24, 32, 42];
 /// The finest of them that a brief search tries.
 const FINEST_BRIEFLY: f64 = 0.8;
+/// What the area of a cell falls by at least from one grid to the next where grids take more than a brief search.
+const COARSE_REFINEMENT: f64 = 1.4;
 /// Passes of roundings that a brief search is worth.
 const BRIEF_EFFORT: f64 = 20.0;
 /// Lines shorter than this had to get much longer, grid units.
@@ -63,6 +65,8 @@ const MOST_ROUNDINGS: usize = 14;
 /// Constraints times coordinates of a usual pass of a rounding; a larger one counts as so many of these, since that is what
 /// its time is proportional to.
 const USUAL_ENTRIES: f64 = 5e5;
+/// Faces on which a move along a path, with its centring, takes as long as a usual pass of a rounding.
+const USUAL_FACES: f64 = 4e4;
 /// Cells of a closed component at a minimum, however coarse the grid asked for: those of a cube with two by two on each
 /// side, so that what is smaller than a cell keeps a shape.
 const FEWEST_CELLS: f64 = 24.0;
@@ -113,7 +117,7 @@ pub(crate) struct ComponentSearch<'a> {
     coarsest: Option<Candidate>,
     /// With the work done so far.
     stats: QuantizationStats,
-    /// Passes of roundings so far, by their size.
+    /// Passes of roundings so far and moves along paths, in usual passes.
     work: f64,
 }
 
@@ -159,6 +163,11 @@ impl<'a> ComponentSearch<'a> {
         Ok(Self { piece, options, layout, energy, obstacles, coarsest: None, stats, work: 0.0 })
     }
 
+    /// The work done so far, in usual passes of roundings.
+    pub(crate) fn work(&self) -> f64 {
+        self.work
+    }
+
     /// Side of a square with the area of the component, mesh units.
     pub(crate) fn side(&self) -> f64 {
         self.layout.side()
@@ -191,20 +200,25 @@ impl<'a> ComponentSearch<'a> {
             Some(_) => FEW_NEARBY,
             None => usize::MAX,
         };
-        let (mut first, mut is_hopeless) = (None, false);
+        let (mut first, mut is_hopeless, mut last) = (None, false, 1.0);
         let mut is_asking = self.coarsest.is_none();
         for (k, share) in NEARBY.into_iter().chain(finer).take(n_shares).enumerate() {
             if let Some(first) = &first {
                 let is_brief = share >= FINEST_BRIEFLY && self.work < BRIEF_EFFORT && !is_hopeless;
                 let is_over = is_asking && !is_brief && !decisions.goes_on(first);
-                if is_over || self.work >= self.options.effort as f64 {
+                if is_over || self.is_spent() {
                     break;
                 }
                 is_asking &= is_brief;
             }
-            if is_hopeless && k < NEARBY.len() {
+            let is_near = match self.work < BRIEF_EFFORT {
+                true => is_hopeless && k < NEARBY.len(),
+                false => share * COARSE_REFINEMENT > last,
+            };
+            if k > 0 && is_near {
                 continue;
             }
+            last = share;
             match self.try_grid(share.sqrt() * asked, column, decisions, watch) {
                 Ok(placement) => return Ok(self.placed(placement, asked, first)),
                 Err(failure) if !failure.is_of_grid() => return Err(failure.in_whole(self.piece)),
@@ -218,6 +232,10 @@ impl<'a> ComponentSearch<'a> {
             None => Err(first.unwrap_or(QuantizationFailure::Refused(Refusal::default()))),
             Some(coarsest) => Ok(self.placed(self.written(coarsest, column)?, asked, first)),
         }
+    }
+
+    fn is_spent(&self) -> bool {
+        self.work >= self.options.effort as f64
     }
 
     /// The lines that had to get much longer for cells of a size in mesh units, if there are some.
@@ -295,7 +313,10 @@ impl<'a> ComponentSearch<'a> {
     ) -> Result<Candidate, QuantizationFailure> {
         let (mut start, mut tried) = (None, BTreeSet::new());
         let mut failure = QuantizationFailure::Refused(Refusal::default());
-        for _ in 0..MOST_ROUNDINGS {
+        for k in 0..MOST_ROUNDINGS {
+            if k > 0 && self.is_spent() {
+                break;
+            }
             let clock = Instant::now();
             let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;
             let size = (problem.constraints.len() * problem.mean.len()) as f64 / USUAL_ENTRIES;
@@ -327,6 +348,7 @@ impl<'a> ComponentSearch<'a> {
             let (y, target) = (self.layout.y.clone(), in_layout(&held, h));
             let Advance { y, reached, moves } =
                 advance(&mut self.layout.problem, y, &target, watch)?;
+            self.work += (moves * self.stats.faces) as f64 / USUAL_FACES;
             self.stats.moves = moves;
             self.stats.seconds_moving += clock.elapsed().as_secs_f64();
             if reached == 1.0 {

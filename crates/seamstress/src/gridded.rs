@@ -1,7 +1,7 @@
 //! A seamless map rounded to a grid, with the features that the grid has room for.
 
 use crate::context::Watcher;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::features::{FeatureCurves, ordered};
 use crate::integer::SeamlessStart;
 use crate::options::IntegerMapOptions;
@@ -9,89 +9,177 @@ use crate::surface::Surface;
 use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph, strips_and_slivers};
 use seamstress_parametrize::{ReleaseReason, ReleasedFeature};
 use seamstress_quads::{GoesOn, ManifoldError};
-use seamstress_quantize::{QuantizationFailure, QuantizeError, QuantizeOptions};
+use seamstress_quantize::{
+    GridSize, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions,
+};
 use std::collections::BTreeSet;
 
 /// Maps made at most, each with fewer features.
 const MOST_MAPS: usize = 6;
+/// The part of the work on a rounding that one is worth where there is another already.
+const EFFORT_AGAIN: usize = 5;
 /// Curves shorter than so many cells are given up before others.
 const SHORT: f64 = 1.0;
+
+/// What is made of a map on a grid, and how it is found there.
+pub(crate) struct Rounding<R, T> {
+    /// Rounds a map.
+    pub(crate) round: R,
+    /// The integer-grid map in what that makes.
+    pub(crate) solution: fn(&T) -> &Quantization,
+}
+
+/// A map with what was made of it.
+struct Gridded<T> {
+    start: SeamlessStart,
+    made: T,
+    /// How far the number of quads is off, as a share.
+    off: f64,
+    /// Features that were given up for it.
+    given_up: EdgeSet,
+}
+
+/// A map with some features, and its rounding.
+struct Attempt<T> {
+    made: Result<Gridded<T>, Error>,
+    /// The features to give up before another attempt.
+    crowd: EdgeSet,
+}
 
 impl Surface {
     /// Makes a seamless map and rounds it. Of strips much narrower than a cell one side is given up first. Where features
     /// are too close together for the grid asked for, the shortest curves there are given up, and the map is made again;
-    /// where there are none to give up, the grid gets finer.
+    /// where there are none to give up, the grid gets finer. Further maps are made as long as they come closer to the number
+    /// of quads asked for.
     ///
     /// # Errors
     /// Those of [`Surface::make_seamless`], and of the rounding with the fewest features.
-    pub(crate) fn make_gridded<T>(
+    pub(crate) fn make_gridded<R, T>(
         &self,
         asked: &FeatureCurves,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
-        round: impl Fn(
+        rounding: &Rounding<R, T>,
+    ) -> Result<(SeamlessStart, T), Error>
+    where
+        R: Fn(
             &SeamlessStart,
             &QuantizeOptions,
             &mut GoesOn<'_>,
             &mut Watcher,
         ) -> Result<T, ManifoldError>,
-    ) -> Result<(SeamlessStart, T), Error> {
+    {
         let (mesh, settings) = (self.mesh(), options.to_quantize());
-        let cell = settings.size.cell(self.cell_metric().side());
-        let is_strict = options.map.features_strict;
-        let mut given_up = Vec::new();
-        let mut give_up = |edges: &EdgeSet| {
-            let pairs = edges.vertex_pairs(mesh).into_iter().map(ordered);
-            given_up.extend(pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded)));
-        };
-        let details = |edges: &EdgeSet| match is_strict {
-            true => EdgeSet::new(mesh, []),
-            false => strips_and_slivers(mesh, self.positions(), self.cell_metric(), edges, cell),
-        };
-        let first = details(&asked.edges);
-        give_up(&first);
-        let mut curves = asked.without(self, &first);
+        let mut given_up = self.details(&asked.edges, options);
+        let mut best: Option<Gridded<T>> = None;
         let mut n_maps = 1;
-        let (start, made) = loop {
-            let start = self.make_seamless(curves.clone(), options, watcher)?;
-            // The map may have dropped an edge beside a sliver.
-            let more = details(&start.kept(mesh));
-            give_up(&more);
-            let start = start.without(mesh, &more);
-            let kept = start.kept(mesh);
-            let may_give_up = n_maps < MOST_MAPS && !is_strict;
-            let crowded = |failure: &QuantizationFailure| match may_give_up {
-                true => self.crowded(failure, &kept, cell),
-                false => EdgeSet::new(mesh, []),
+        let best = loop {
+            let effort = match best {
+                None => settings.effort,
+                Some(_) => settings.effort / EFFORT_AGAIN,
             };
-            let mut goes_on = |failure: &_| crowded(failure).is_empty();
-            let cause = match round(&start, &settings, &mut goes_on, watcher) {
-                Ok(made) => break (start, made),
-                Err(cause) => cause,
+            let settings = QuantizeOptions { effort, ..settings };
+            let may_give_up = n_maps < MOST_MAPS && !options.map.features_strict;
+            let Attempt { made, crowd } = self.attempt(
+                (asked, &given_up),
+                (options, &settings, may_give_up),
+                watcher,
+                rounding,
+            );
+            best = match (made, best) {
+                (Ok(made), Some(best)) if made.off >= best.off => break best,
+                (Ok(made), _) if crowd.is_empty() => break made,
+                (Ok(made), _) => Some(made),
+                (Err(error), _) if error.kind() == ErrorKind::Cancelled => return Err(error),
+                (Err(_), Some(best)) => break best,
+                (Err(error), None) if crowd.is_empty() => return Err(error),
+                (Err(_), None) => None,
             };
-            let failed = match &cause {
-                ManifoldError::Quantize(QuantizeError::Components(failed)) => &failed[..],
-                _ => &[],
-            };
-            let crowded = failed.iter().flat_map(|part| crowded(&part.cause).edges().to_vec());
-            let crowded = EdgeSet::new(mesh, crowded);
-            if crowded.is_empty() {
-                return Err(self.no_manifold(cause, options));
-            }
-            give_up(&crowded);
-            curves = curves.without(self, &crowded.union(mesh, &more));
+            given_up = given_up.union(mesh, &crowd);
             n_maps += 1;
         };
-        let features = start.features.map(|features| features.among(asked, given_up));
-        Ok((SeamlessStart { features, ..start }, made))
+        let pairs = best.given_up.vertex_pairs(mesh).into_iter().map(ordered);
+        let given_up = pairs.map(|pair| ReleasedFeature::new(pair, ReleaseReason::Crowded));
+        let given_up = given_up.collect();
+        let features = best.start.features.map(|features| features.among(asked, given_up));
+        Ok((SeamlessStart { features, ..best.start }, best.made))
     }
 
-    /// The edges to give up where a component has failed: of the curves at lines of the grid that would meet, the short
-    /// ones, or else the shortest at each place.
-    fn crowded(&self, failure: &QuantizationFailure, kept: &EdgeSet, cell: f64) -> EdgeSet {
-        let QuantizationFailure::TooCoarse { pairs, .. } = failure else {
-            return EdgeSet::new(self.mesh(), []);
+    /// The features that a grid has no room for.
+    fn details(&self, edges: &EdgeSet, options: &IntegerMapOptions) -> EdgeSet {
+        match options.map.features_strict {
+            true => EdgeSet::new(self.mesh(), []),
+            false => {
+                let (cell, metric) = (self.cell(options), self.cell_metric());
+                strips_and_slivers(self.mesh(), self.positions(), metric, edges, cell)
+            }
+        }
+    }
+
+    fn cell(&self, options: &IntegerMapOptions) -> f64 {
+        options.size.to_quantize().cell(self.cell_metric().side())
+    }
+
+    /// Makes a map that follows all features asked for but those given up, and rounds it.
+    fn attempt<R, T>(
+        &self,
+        (asked, given_up): (&FeatureCurves, &EdgeSet),
+        (options, settings, may_give_up): (&IntegerMapOptions, &QuantizeOptions, bool),
+        watcher: &mut Watcher,
+        rounding: &Rounding<R, T>,
+    ) -> Attempt<T>
+    where
+        R: Fn(
+            &SeamlessStart,
+            &QuantizeOptions,
+            &mut GoesOn<'_>,
+            &mut Watcher,
+        ) -> Result<T, ManifoldError>,
+    {
+        let mesh = self.mesh();
+        let none = EdgeSet::new(mesh, []);
+        let start = match self.make_seamless(asked.without(self, given_up), options, watcher) {
+            Ok(start) => start,
+            Err(error) => return Attempt { made: Err(error), crowd: none },
         };
+        // The map may have dropped an edge beside a sliver.
+        let more = self.details(&start.kept(mesh), options);
+        let start = start.without(mesh, &more);
+        let kept = start.kept(mesh);
+        let crowded = |pairs: &[[u32; 2]]| match may_give_up {
+            true => self.crowded(pairs, &kept, self.cell(options)),
+            false => EdgeSet::new(mesh, []),
+        };
+        let mut goes_on = |failure: &_| {
+            let pairs: Vec<_> = close(failure).collect();
+            crowded(&pairs).is_empty()
+        };
+        let rounded = (rounding.round)(&start, settings, &mut goes_on, watcher);
+        let crowd = match &rounded {
+            Ok(made) => crowded(&(rounding.solution)(made).crowded),
+            Err(ManifoldError::Quantize(QuantizeError::Components(failed))) => {
+                let pairs: Vec<_> = failed.iter().flat_map(|part| close(&part.cause)).collect();
+                crowded(&pairs)
+            }
+            Err(_) => none,
+        };
+        let crowd = match crowd.is_empty() {
+            true => crowd,
+            false => crowd.union(mesh, &more),
+        };
+        let made = rounded.map_err(|cause| self.no_manifold(cause, options)).map(|made| {
+            let off = match settings.size {
+                GridSize::Quads(asked) => ((rounding.solution)(&made).quads() / asked - 1.0).abs(),
+                GridSize::EdgeLength(_) | GridSize::Scale(_) => 0.0,
+            };
+            Gridded { start, made, off, given_up: given_up.union(mesh, &more) }
+        });
+        Attempt { made, crowd }
+    }
+
+    /// The edges to give up where vertices are too close together: of the curves at lines of the grid that would meet, the short
+    /// ones, or else the shortest at each place.
+    fn crowded(&self, pairs: &[[u32; 2]], kept: &EdgeSet, cell: f64) -> EdgeSet {
         let graph = FeatureGraph::new(self.mesh(), self.cell_metric(), kept);
         let inside: Vec<&Curve> =
             graph.curves.iter().filter(|curve| curve.boundary_edges == 0).collect();
@@ -113,4 +201,13 @@ impl Surface {
         };
         EdgeSet::new(self.mesh(), given_up.iter().flat_map(|curve| curve.edges.iter().copied()))
     }
+}
+
+/// The pairs of vertices that a grid has not kept apart.
+fn close(failure: &QuantizationFailure) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let pairs = match failure {
+        QuantizationFailure::TooCoarse { pairs, .. } => &pairs[..],
+        _ => &[],
+    };
+    pairs.iter().copied()
 }

@@ -7,6 +7,7 @@ use crate::feature_sources::Features;
 use crate::features::{AlignedFeatures, FeatureCurves, FeatureReport, edges_of};
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
+use crate::gridded::Rounding;
 use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
 use crate::parts::{PartReport, Selection};
@@ -201,7 +202,8 @@ impl Surface {
                              watcher: &mut _| {
                     Ok(surface.make_integer(start, settings, goes_on, watcher)?)
                 };
-                surface.make_gridded(&selection.curves, options, watcher, round)
+                let rounding = Rounding { round, solution: |made: &Quantization| made };
+                surface.make_gridded(&selection.curves, options, watcher, &rounding)
             })
         });
         made.map_err(|error| error.of(self.input()))

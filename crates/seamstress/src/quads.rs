@@ -6,6 +6,7 @@ use crate::feature_sources::Features;
 use crate::features::FeatureReport;
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
+use crate::gridded::Rounding;
 use crate::integer::{FEWER_CONES, GridReport, SeamlessStart};
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::Selection;
@@ -189,7 +190,8 @@ impl Selection {
             let mut observe = |progress| watcher.observe(progress);
             manifold_quads(mesh, geometry, map, &kept, settings, goes_on, &mut observe)
         };
-        let (start, made) = surface.make_gridded(&work.curves, &integer, watcher, round)?;
+        let rounding = Rounding { round, solution: |made: &ManifoldQuads| &made.quantization };
+        let (start, made) = surface.make_gridded(&work.curves, &integer, watcher, &rounding)?;
         let ManifoldQuads { quantization: solution, mut extraction, connectivity, .. } = made;
         let features = start.features.map(|f| f.certified_in(mesh, solution.map.seamless()));
         let features = features.transpose().map_err(|v| surface.misaligned(&v))?;

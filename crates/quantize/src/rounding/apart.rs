@@ -11,8 +11,8 @@ const TOLERANCE: f64 = 0.02;
 const SMALLEST_STEP: f64 = 0.004;
 /// Times that half-planes are added, and sweeps over them each time. Most points take a few of both; where no point is
 /// far enough in all half-planes, the one found is a start as good as others.
-const MOST_ROUNDS: usize = 30;
-const MOST_SWEEPS: usize = 100;
+const MOST_ROUNDS: usize = 10;
+const MOST_SWEEPS: usize = 30;
 /// How much easier a half-plane gives way than its energy says, as a share: those that contradict each other share what
 /// is missing.
 const YIELDING: f64 = 1e-3;

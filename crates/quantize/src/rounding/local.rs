@@ -12,8 +12,8 @@ const TRIED: usize = 300;
 const GAIN: f64 = 1e-6;
 /// A fall of the energy, or of the weight of a repair, that counts where there is none left.
 const SMALLEST_GAIN: f64 = 1e-12;
-/// Most steps of a repair. Those that succeed take less than a third of it on all meshes measured.
-const MOST_REPAIRS: usize = 1000;
+/// Most steps of a repair. Those that succeed take fewer on all meshes measured.
+const MOST_REPAIRS: usize = 400;
 /// What energy counts in a repair against a violated constraint of weight one; a step along a usual coordinate costs
 /// about one.
 const ENERGY_WEIGHT: f64 = 0.05;
