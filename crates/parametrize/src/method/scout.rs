@@ -11,7 +11,6 @@ use super::relaxed::RelaxedLayout;
 use super::start::repaired;
 use super::{MapOptions, MethodError, Start, lay_out_directly};
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
-use crate::field::Guide;
 use crate::layout::ladder::LayoutEffort;
 use crate::progress::{Stage, Watch, unless_cancelled};
 use crate::rounding::{Rounding, RoundingStats, RoundingStrategy, fix_holonomy};
@@ -46,8 +45,6 @@ impl Share {
 const SPIKE: f64 = FRAC_PI_4;
 /// The bias against cones, as a part of the one asked for: a coarser mesh has fewer places for cones as it is.
 const BIAS: f64 = 0.2;
-/// Triangles that a coarser mesh has for each cell, at least, where directions are followed.
-const LEAST_FACES: f64 = 2.0;
 /// A layout has 0.75 to 1 times the excess energy of one of a coarser mesh with the same cones.
 const TRUST: f64 = 1.3;
 
@@ -114,11 +111,6 @@ pub(super) fn scout(
     let Ok(Rounding { start, stats }) = repaired(domain, placed) else { return Ok(None) };
     watch.pulse()?;
     let start = fix_holonomy(sectors, metric, start, None)?;
-    let start = match &domain.guide {
-        None => start,
-        // Now that the frames turn the right way round it is known which of its directions they are to follow.
-        Some(guide) => fix_holonomy(sectors, metric, start, Some(guide))?,
-    };
     let Some(layout) = lay_out_cleaned(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
     Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))
@@ -129,19 +121,11 @@ fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bo
     // Smaller meshes are as coarse as need be.
     n_faces >= 2 * Share::new(options).of(n_faces)
         && !domain.any_aligned()
-        && domain.geometry.directions.is_none()
-        && domain.guide.as_ref().is_none_or(|guide| is_seen(guide, domain, options))
+        && domain.guide.is_none()
         && domain.lengthening == 0.0
         && start.leaves_cones_free()
         && options.cone_price != Some(0.0)
         && options.rounding.strategy == RoundingStrategy::ConeBias
-}
-
-/// Whether a coarser mesh has the directions of a guide: its triangles are smaller than the cells.
-fn is_seen(guide: &Guide, domain: &Domain<'_>, options: &MapOptions) -> bool {
-    let n_cells = domain.metric.total_area() / (guide.cell * guide.cell);
-    let n_faces = Share::new(options).of(domain.mesh().n_faces());
-    n_faces as f64 >= LEAST_FACES * n_cells
 }
 
 /// What is known of a coarser mesh.
