@@ -94,6 +94,31 @@ fn a_map_that_was_found_is_not_lost() {
 }
 
 #[test]
+fn a_map_with_too_many_cells_is_kept_though_the_caller_would_rather_have_another() {
+    struct Wishing;
+    impl Decisions for Wishing {
+        fn goes_on(&mut self, _: &QuantizationFailure) -> bool {
+            false
+        }
+    }
+    // Thinner than a cell, so that its two sides are short lines apart.
+    let slab = testkit::subdivide(&testkit::slab_with_holes(6));
+    let soup = testkit::stretch(&slab, [1.0, 1.0, 0.15]);
+    let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
+    let options = QuantizeOptions { size: GridSize::Quads(40.0), ..Default::default() };
+    let nothing = EdgeSet::new(&mesh, []);
+    let mut quantize = |decisions: &mut dyn Decisions| {
+        let positions = &soup.positions;
+        quantize_deciding(&mesh, positions, &map, &nothing, &options, decisions, &mut go_on)
+    };
+    let made = quantize(&mut Wishing).unwrap();
+    assert!(made.quads() > 1.5 * 40.0 && !made.crowded.is_empty(), "{} quads", made.quads());
+    assert!(quantize(&mut ()).unwrap().crowded.is_empty());
+}
+
+#[test]
 fn what_is_hard_to_keep_comes_first_the_second_time() {
     let made = found(&testkit::random_voxels(3, 1), 30.0);
     assert!(made.components[0].second_roundings > 0);
