@@ -43,6 +43,10 @@ pub(crate) struct SeamlessLayout<'a> {
     needs: GridNeeds,
 }
 
+/// How much directions count here against what they count in a map: with all of it, whole numbers leave less room between
+/// features.
+const DIRECTIONS: f64 = 0.25;
+
 impl<'a> SeamlessLayout<'a> {
     /// Reads a seamless map of a connected mesh with its aligned edges; its directions count by `alignment`.
     ///
@@ -67,7 +71,7 @@ impl<'a> SeamlessLayout<'a> {
         let (coordinates, y) = space.read(&z);
         watch.pulse()?;
         let mut triangles = triangles(mesh, metric, &cut);
-        keep_directions(&mut triangles, &z, alignment);
+        keep_directions(&mut triangles, &z, DIRECTIONS * alignment);
         let problem = LayoutProblem::with_held(space.linear()?, triangles, space.n_free())?;
         let aligned = aligned.vertex_pairs(mesh);
         let unit = metric.unit;
