@@ -115,7 +115,7 @@ const RESEARCH: [&str; 18] = [
     "objective",
 ];
 /// Options of everyday commands that few people need: `-h` leaves them out, `--help` and the manual have them.
-const RARE: [&str; 24] = [
+const RARE: [&str; 25] = [
     "uv_set",
     "raw",
     "source_points",
@@ -136,6 +136,7 @@ const RARE: [&str; 24] = [
     "scale",
     "align_boundary",
     "features_strict",
+    "fast",
     "small_parts",
     "view",
     "up",

@@ -3,8 +3,8 @@
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
 use crate::features::{FeatureCurves, ordered};
-use crate::integer::SeamlessStart;
 use crate::options::IntegerMapOptions;
+use crate::seamless_start::SeamlessStart;
 use crate::surface::Surface;
 use seamstress_mesh::features::{Curve, EdgeSet, FeatureGraph, strips_and_slivers};
 use seamstress_parametrize::{ReleaseReason, ReleasedFeature};
@@ -87,7 +87,8 @@ impl Surface {
                 rounding,
             );
             best = match (made, best) {
-                (Ok(made), Some(best)) if made.off >= best.off => break best,
+                (Ok(made), Some(best)) if made.off >= best.off && crowd.is_empty() => break best,
+                (Ok(made), Some(best)) if made.off >= best.off => Some(best),
                 (Ok(made), _) if crowd.is_empty() => break made,
                 (Ok(made), _) => Some(made),
                 (Err(error), _) if error.kind() == ErrorKind::Cancelled => return Err(error),

@@ -12,11 +12,10 @@ use crate::map::{Described, SeamlessMap};
 use crate::options::{GridRounding, IntegerMapOptions};
 use crate::parts::{PartReport, Selection};
 use crate::report::{ConeReport, Distortion, SeamReport, SurfaceReport, VERSION};
+use crate::seamless_start::SeamlessStart;
 use crate::sizes::SizeReport;
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
-use seamstress_mesh::TriMesh;
-use seamstress_mesh::features::EdgeSet;
 use seamstress_parametrize::map::{Certificate, IntegerCertificate};
 use seamstress_parametrize::{self as method, AlignmentTolerance, Tolerance};
 use seamstress_quads::GoesOn;
@@ -146,31 +145,6 @@ impl Described for IntegerMapReport {
 
     fn lines(&self) -> Vec<String> {
         vec!["One quad per unit square".into(), self.grid.to_string()]
-    }
-}
-
-/// What an integer-grid map is made from.
-pub(crate) struct SeamlessStart {
-    pub(crate) map: method::SeamlessMap,
-    pub(crate) features: Option<AlignedFeatures>,
-    /// What it was certified to.
-    pub(crate) tolerance: Tolerance,
-}
-
-impl SeamlessStart {
-    /// The features that it follows.
-    pub(crate) fn kept(&self, mesh: &TriMesh) -> EdgeSet {
-        let kept = self.features.as_ref().map_or(&[][..], |features| &features.kept);
-        edges_of(mesh, kept)
-    }
-
-    /// The same, following fewer of them.
-    pub(crate) fn without(mut self, mesh: &TriMesh, edges: &EdgeSet) -> Self {
-        if let Some(features) = &mut self.features {
-            let left = edges_of(mesh, &features.kept).without(mesh, edges.edges().iter().copied());
-            features.kept = left.vertex_pairs(mesh);
-        }
-        self
     }
 }
 

@@ -96,6 +96,7 @@ mod refined;
 mod report;
 #[cfg(feature = "schema")]
 mod schema;
+mod seamless_start;
 mod size_sources;
 mod sizes;
 mod surface;

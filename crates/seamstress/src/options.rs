@@ -42,7 +42,7 @@ pub struct MapOptions {
     pub corner_angle: f64,
 
     /// How much to follow the directions of principal curvature: 0 not at all, 1 as far as they are certain, so that
-    /// lines run around and along limbs and tubes [default: 0; for quads of a mesh 1]
+    /// lines run around and along limbs and tubes [default: 0; for quads of a mesh 1, but 0 where cells have different sizes]
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::share))]
     pub align: Option<f64>,
 

@@ -7,12 +7,13 @@ use crate::features::FeatureReport;
 use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::gridded::Rounding;
-use crate::integer::{FEWER_CONES, GridReport, SeamlessStart};
+use crate::integer::{FEWER_CONES, GridReport};
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::Selection;
 use crate::quad_report::{ExtractedMap, QuadMeshReport, QuadReport, Untangled};
 use crate::refined::Workpiece;
 use crate::report::{Distortion, VERSION};
+use crate::seamless_start::SeamlessStart;
 use crate::sizes::SizeReport;
 use crate::surface::Surface;
 use crate::symmetric::Side;
@@ -234,8 +235,10 @@ impl Surface {
     pub fn quad_mesh(&self, options: &QuadOptions) -> Result<QuadMesh, Error> {
         options.validate()?;
         options.size.check_count(self.metric().side())?;
+        // Cells that have sizes of their own keep these rather than directions.
+        let align = if options.map.has_sizes() { 0.0 } else { ALIGN };
         let options =
-            &options.clone().map(options.map.or_features(Features::auto()).or_align(ALIGN));
+            &options.clone().map(options.map.or_features(Features::auto()).or_align(align));
         let made = self.context().run(self.expected_for_grid(options.size), |watcher| {
             let asked = self.features_for(&options.map.features, options.size)?;
             let cell = options.size.to_quantize().cell(self.metric().side());
