@@ -1,7 +1,7 @@
 //! How work is run: progress, cancellation, limits of time and memory, threads.
 
 use crate::error::{Error, ErrorKind, Stage};
-use crate::expected::Expected;
+use crate::forecast::Expected;
 use crate::memory::Memory;
 use seamstress_parallel::with_threads;
 use seamstress_parametrize::progress::Progress as Step;

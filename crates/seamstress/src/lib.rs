@@ -67,6 +67,7 @@ mod field;
 #[cfg(feature = "io")]
 mod files;
 mod finding;
+mod forecast;
 #[cfg(feature = "io")]
 mod given;
 mod grid_size;
