@@ -49,8 +49,8 @@ struct Attempt<T> {
 impl Surface {
     /// Makes a seamless map and rounds it. Of strips much narrower than a cell one side is given up first. Where features
     /// are too close together for the grid asked for, the shortest curves there are given up, and the map is made again;
-    /// where there are none to give up, the grid gets finer. Further maps are made as long as they come closer to the number
-    /// of quads asked for.
+    /// where there are none to give up, the grid gets finer. Further maps are made as long as there are features to
+    /// give up, and the one that comes closest to the number of quads asked for stays.
     ///
     /// # Errors
     /// Those of [`Surface::make_seamless`], and of the rounding with the fewest features.
