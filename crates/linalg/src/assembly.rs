@@ -1,7 +1,7 @@
 //! Sums of small dense blocks into a sparse symmetric matrix, in parallel and always in one order.
 
 use crate::buckets::Buckets;
-use crate::pattern::{Pattern, PatternBuilder};
+use crate::pattern::Pattern;
 use seamstress_parallel::prelude::*;
 
 /// Where the entries of local blocks go: elements with a few unknowns each, coupled all with all.
@@ -31,18 +31,13 @@ fn gather(buckets: &Buckets, values: &[f64], targets: &mut [f64]) {
 }
 
 impl Assembly {
-    /// Prepares the assembly of elements over `order` unknowns.
-    pub fn new<'a>(order: usize, elements: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
-        let mut builder = PatternBuilder::new(order);
-        for unknowns in elements.clone() {
-            builder.add_clique(unknowns);
-        }
-        let pattern = builder.build();
+    /// Prepares the assembly of elements over [their pattern](Pattern::of_cliques).
+    pub fn new<'a>(pattern: Pattern, elements: impl Iterator<Item = &'a [u32]>) -> Self {
         let (mut element_offsets, mut block_offsets) = (vec![0u32], vec![0u32]);
         let (mut all, mut slots) = (Vec::new(), Vec::new());
         for unknowns in elements {
             for (i, &a) in unknowns.iter().enumerate() {
-                // The pattern holds every pair: it was built from the same cliques.
+                // The pattern holds every pair.
                 slots.extend(unknowns[..=i].iter().filter_map(|&b| pattern.slot(a, b)));
             }
             all.extend_from_slice(unknowns);
@@ -51,7 +46,7 @@ impl Assembly {
         }
         Self {
             matrix: Buckets::new(pattern.len(), &slots),
-            vector: Buckets::new(order, &all),
+            vector: Buckets::new(pattern.order(), &all),
             pattern,
             element_offsets,
             unknowns: all,
@@ -113,7 +108,8 @@ mod tests {
     fn two_springs_by_hand() {
         // k (x_a - x_b)^2 / 2 on pairs (1, 0) and (1, 2)
         let elements: [&[u32]; 2] = [&[1, 0], &[1, 2]];
-        let assembly = Assembly::new(3, elements.into_iter());
+        let assembly =
+            Assembly::new(Pattern::of_cliques(3, elements.into_iter()), elements.into_iter());
         assert_eq!(assembly.unknowns(1), [1, 2]);
         let blocks = [5.0, -5.0, 5.0, 7.0, -7.0, 7.0];
         assert_eq!(assembly.blocks_len(), 6);

@@ -6,9 +6,11 @@
 //! differ in the last bits between processors that round a multiplication and an addition together (x86-64 with
 //! AVX2 and FMA, AArch64) and others.
 
+mod forest;
 mod fronts;
 mod kernels;
 mod numeric;
+mod pieces;
 mod quad;
 mod selected_inverse;
 mod solve;
@@ -16,10 +18,9 @@ mod symbolic;
 mod tree;
 
 use crate::pattern::Pattern;
-use kernels::dispatch;
 use numeric::Factor;
 pub use quad::Scalar;
-use solve::Solve;
+use solve::Workspace;
 use symbolic::Symbolic;
 
 /// No id.
@@ -36,34 +37,6 @@ pub struct Cholesky<T: Scalar> {
     factor: Factor<T>,
     /// Of solves with one right-hand side.
     workspace: Workspace<T, 1>,
-}
-
-/// Memory of a solve with `N` right-hand sides.
-struct Workspace<T: Scalar, const N: usize> {
-    x: Vec<[T; N]>,
-    sums: Vec<[T::Quad; N]>,
-}
-
-impl<T: Scalar, const N: usize> Workspace<T, N> {
-    fn new(symbolic: &Symbolic) -> Self {
-        Self {
-            x: vec![[T::default(); N]; symbolic.order.len()],
-            sums: vec![[T::Quad::default(); N]; symbolic.widest],
-        }
-    }
-
-    /// Solves for `N` columns, one after the other in `rhs`.
-    fn solve<const R: usize>(&mut self, symbolic: &Symbolic, factor: &Factor<T>, rhs: &mut [T]) {
-        let n = symbolic.order.len();
-        for (x, &i) in self.x.iter_mut().zip(&symbolic.order) {
-            *x = std::array::from_fn(|k| rhs[k * n + i as usize]);
-        }
-        let Self { x, sums } = self;
-        dispatch(Solve::<T, R, N> { symbolic, factor, x, sums });
-        for (x, &i) in self.x.iter().zip(&symbolic.order) {
-            (0..N).for_each(|k| rhs[k * n + i as usize] = x[k]);
-        }
-    }
 }
 
 impl<T: Scalar> Cholesky<T> {

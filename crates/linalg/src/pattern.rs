@@ -12,6 +12,13 @@ pub struct Pattern {
 }
 
 impl Pattern {
+    /// The pattern in which all unknowns of a clique are coupled with each other.
+    pub fn of_cliques<'a>(order: usize, cliques: impl Iterator<Item = &'a [u32]>) -> Self {
+        let mut builder = PatternBuilder::new(order);
+        cliques.for_each(|clique| builder.add_clique(clique));
+        builder.build()
+    }
+
     /// Order of the matrix.
     pub fn order(&self) -> usize {
         self.column_offsets.len() - 1

@@ -12,4 +12,4 @@ mod threads;
 
 #[cfg(feature = "rayon")]
 pub use rayon::prelude;
-pub use threads::{ThreadsError, beside, n_threads, with_threads};
+pub use threads::{ThreadsError, beside, both, n_threads, with_threads};

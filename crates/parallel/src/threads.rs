@@ -68,3 +68,18 @@ pub fn beside<R>(aside: impl FnOnce(), work: impl FnOnce() -> R) -> R {
     aside();
     result
 }
+
+/// Runs two pieces of work, side by side where a thread of the caller's pool is free.
+#[cfg(feature = "rayon")]
+pub fn both<A: Send, B: Send>(
+    one: impl FnOnce() -> A + Send,
+    other: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    rayon::join(one, other)
+}
+
+/// Runs two pieces of work, one after the other.
+#[cfg(not(feature = "rayon"))]
+pub fn both<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
+    (one(), other())
+}

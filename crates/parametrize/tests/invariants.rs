@@ -17,7 +17,7 @@ use seamstress_parametrize::cut::{
 };
 use seamstress_parametrize::features::index_bounds;
 use seamstress_parametrize::rounding::{
-    CleanUpOptions, ConeCount, Repair, RoundingOptions, Surrogate, clean_up, fix_holonomy, repair,
+    CleanUpOptions, ConeCount, Holonomy, Repair, RoundingOptions, Surrogate, clean_up, repair,
     round,
 };
 use seamstress_testkit as kit;
@@ -296,6 +296,7 @@ fn the_bounds_of_indices_leave_room_in_the_corners() {
 fn new_holonomy_keeps_every_index() {
     for (seed, soup) in shapes().iter().enumerate() {
         let (mesh, metric) = surface(soup);
+        let sectors = Sectors::unaligned(&mesh);
         let mut matched = rounded(&mesh, &metric);
         let mut rng = kit::Rng::new(seed as u64);
         matched.matching.iter_mut().for_each(|r| *r += rng.below(3) as i32 - 1);
@@ -303,14 +304,14 @@ fn new_holonomy_keeps_every_index() {
         let sum: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         let frames = vec![Complex64::ONE; mesh.n_faces()];
         let start = FramedCut { matched, frames };
-        let fixed = fix_holonomy(&Sectors::unaligned(&mesh), &metric, start, None).unwrap();
+        let fixed = Holonomy::new(&sectors, &metric, None).unwrap().fix(start);
         let FramedCut { matched, frames } = fixed.clone();
         assert_eq!(frames.len(), mesh.n_faces());
         assert_eq!(matched.sector_indices(&Sectors::unaligned(&mesh), &metric), before);
         let after: f64 = real_indices(&mesh, &metric, &matched).iter().sum();
         assert!((sum - after).abs() < 1e-8);
         // What is best is not changed again.
-        let again = fix_holonomy(&Sectors::unaligned(&mesh), &metric, fixed, None).unwrap();
+        let again = Holonomy::new(&sectors, &metric, None).unwrap().fix(fixed);
         assert_eq!(again.matched.matching, matched.matching);
     }
 }

@@ -119,7 +119,7 @@ fn shares<'a, Q: Quad>(
 }
 
 /// Cuts off the beginning of a slice.
-fn cut<'a, T>(slice: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+pub(super) fn cut<'a, T>(slice: &mut &'a mut [T], length: usize) -> &'a mut [T] {
     let (head, tail) = std::mem::take(slice).split_at_mut(length);
     *slice = tail;
     head

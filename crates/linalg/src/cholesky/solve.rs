@@ -1,38 +1,160 @@
 //! Solves with a factor: forwards through the fronts, and back.
 
-use super::kernels::Kernel;
-use super::numeric::Factor;
+use super::kernels::{Kernel, dispatch};
+use super::numeric::{Factor, cut};
+use super::pieces::{Piece, Pieces};
 use super::quad::{Quad, Scalar};
 use super::symbolic::{Front, Symbolic};
+use seamstress_parallel::prelude::*;
 
-/// Solves `L L^H x = b` in place for `N` right-hand sides; row `k` of `x` is the unknown eliminated `k`-th. `R` block
-/// rows of a panel are worked on together, which is a matter of speed only.
-pub(super) struct Solve<'a, T: Scalar, const R: usize, const N: usize> {
-    pub(super) symbolic: &'a Symbolic,
-    pub(super) factor: &'a Factor<T>,
-    pub(super) x: &'a mut [[T; N]],
-    /// As many as any front has columns.
-    pub(super) sums: &'a mut [[T::Quad; N]],
+/// Memory of a solve with `N` right-hand sides.
+pub(super) struct Workspace<T: Scalar, const N: usize> {
+    /// The vectors of the pieces, one after the other.
+    x: Vec<[T; N]>,
+    /// Of each piece as many as its widest front has columns.
+    sums: Vec<[T::Quad; N]>,
 }
 
-impl<T: Scalar, const R: usize, const N: usize> Kernel for Solve<'_, T, R, N> {
+impl<T: Scalar, const N: usize> Workspace<T, N> {
+    pub(super) fn new(symbolic: &Symbolic) -> Self {
+        let Pieces { subtrees, top, .. } = &symbolic.pieces;
+        let length = subtrees.iter().map(Piece::len).sum::<usize>() + top.len();
+        let widest = subtrees.iter().map(|piece| piece.widest).sum::<usize>() + top.widest;
+        Self { x: vec![[T::default(); N]; length], sums: vec![[T::Quad::default(); N]; widest] }
+    }
+
+    /// Solves for `N` columns, one after the other in `rhs`. `R` block rows of a panel are worked on together, which is
+    /// a matter of speed only.
+    pub(super) fn solve<const R: usize>(
+        &mut self,
+        symbolic: &Symbolic,
+        factor: &Factor<T>,
+        rhs: &mut [T],
+    ) {
+        let Pieces { subtrees, top, .. } = &symbolic.pieces;
+        let (mut x, mut sums) = (&mut self.x[..], &mut self.sums[..]);
+        let mut top = Part::new(top, &mut x, &mut sums);
+        let parts = subtrees.iter().map(|piece| Part::new(piece, &mut x, &mut sums));
+        let mut parts: Vec<_> = parts.collect();
+        let n = symbolic.order.len();
+
+        parts.par_iter_mut().for_each(|part| {
+            part.load(rhs, n);
+            let fronts = part.piece.fronts.clone();
+            dispatch(Forwards::<T, _, R, N> { symbolic, factor, fronts, x: part.x });
+        });
+        top.load(rhs, n);
+        for part in &mut parts {
+            for (&k, x) in part.piece.rim.iter().zip(part.rim()) {
+                let sum = &mut top.x[k as usize];
+                (0..N).for_each(|n| sum[n] = sum[n] + x[n]);
+            }
+        }
+        let fronts = || top.piece.fronts.iter().copied();
+        dispatch(Forwards::<T, _, R, N> { symbolic, factor, fronts: fronts(), x: top.x });
+        let (fronts, sums) = (fronts(), &mut *top.sums);
+        dispatch(Backwards::<T, _, R, N> { symbolic, factor, fronts, x: top.x, sums });
+        parts.par_iter_mut().for_each(|part| {
+            for (&k, x) in part.piece.rim.iter().zip(part.rim()) {
+                *x = top.x[k as usize];
+            }
+            let Part { piece, x, sums } = part;
+            let fronts = piece.fronts.clone();
+            dispatch(Backwards::<T, _, R, N> { symbolic, factor, fronts, x, sums });
+        });
+
+        top.store(rhs, n);
+        parts.iter().for_each(|part| part.store(rhs, n));
+    }
+}
+
+/// A piece and its share of the memory.
+struct Part<'a, T: Scalar, F, const N: usize> {
+    piece: &'a Piece<F>,
+    x: &'a mut [[T; N]],
+    sums: &'a mut [[T::Quad; N]],
+}
+
+impl<'a, T: Scalar, F, const N: usize> Part<'a, T, F, N> {
+    /// Cuts its share off the memory of all.
+    fn new(
+        piece: &'a Piece<F>,
+        x: &mut &'a mut [[T; N]],
+        sums: &mut &'a mut [[T::Quad; N]],
+    ) -> Self {
+        Self { piece, x: cut(x, piece.len()), sums: cut(sums, piece.widest) }
+    }
+
+    fn rim(&mut self) -> &mut [[T; N]] {
+        &mut self.x[self.piece.unknowns.len()..]
+    }
+
+    /// Takes its unknowns from right-hand sides of length `n`; the rim is zero.
+    fn load(&mut self, rhs: &[T], n: usize) {
+        for (x, &i) in self.x.iter_mut().zip(&self.piece.unknowns) {
+            *x = std::array::from_fn(|k| rhs[k * n + i as usize]);
+        }
+        self.rim().fill([T::default(); N]);
+    }
+
+    /// Gives its unknowns back.
+    fn store(&self, rhs: &mut [T], n: usize) {
+        for (x, &i) in self.x.iter().zip(&self.piece.unknowns) {
+            (0..N).for_each(|k| rhs[k * n + i as usize] = x[k]);
+        }
+    }
+}
+
+/// Solves `L y = b` in place for fronts of one piece.
+struct Forwards<'a, T: Scalar, F, const R: usize, const N: usize> {
+    symbolic: &'a Symbolic,
+    factor: &'a Factor<T>,
+    fronts: F,
+    x: &'a mut [[T; N]],
+}
+
+impl<T: Scalar, F: Iterator<Item = usize>, const R: usize, const N: usize> Kernel
+    for Forwards<'_, T, F, R, N>
+{
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let Self { symbolic, factor, x, sums } = self;
-        for s in 0..symbolic.len() {
+        let Self { symbolic, factor, fronts, x } = self;
+        for s in fronts {
             Panel::<T::Quad>::new(symbolic, factor, s).solve_forwards::<FMA, R, N>(x);
         }
-        for s in (0..symbolic.len()).rev() {
+    }
+}
+
+/// Solves `L^H x = y` in place for fronts of one piece.
+struct Backwards<'a, T: Scalar, F, const R: usize, const N: usize> {
+    symbolic: &'a Symbolic,
+    factor: &'a Factor<T>,
+    fronts: F,
+    x: &'a mut [[T; N]],
+    sums: &'a mut [[T::Quad; N]],
+}
+
+impl<T: Scalar, F: DoubleEndedIterator<Item = usize>, const R: usize, const N: usize> Kernel
+    for Backwards<'_, T, F, R, N>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { symbolic, factor, fronts, x, sums } = self;
+        for s in fronts.rev() {
             Panel::<T::Quad>::new(symbolic, factor, s).solve_backwards::<FMA, R, N>(x, sums);
         }
     }
 }
 
-/// The panel of a front.
+/// The panel of a front, with rows as its piece numbers them.
 struct Panel<'a, Q> {
     front: Front<'a>,
+    first: usize,
+    others: &'a [u32],
     rows: &'a [Q],
     /// Reciprocals of the diagonal.
     inverse: &'a [f64],
@@ -43,7 +165,13 @@ impl<'a, Q: Quad> Panel<'a, Q> {
     fn new(symbolic: &'a Symbolic, factor: &'a Factor<Q::Scalar>, s: usize) -> Self {
         let front = symbolic.front(s);
         let inverse = &factor.inverse[front.first..][..front.columns];
-        Self { front, rows: &factor.panels[symbolic.panels(s..s + 1)], inverse }
+        Self {
+            front,
+            first: symbolic.pieces.first[s] as usize,
+            others: &symbolic.pieces.rows[symbolic.row_range(s..s + 1)],
+            rows: &factor.panels[symbolic.panels(s..s + 1)],
+            inverse,
+        }
     }
 
     /// Block rows of the pivots.
@@ -59,7 +187,7 @@ impl<'a, Q: Quad> Panel<'a, Q> {
         let columns = self.front.columns;
         let blocks = self.front.update_blocks();
         let mut skip = self.front.update_skip();
-        let mut rows = self.front.rows;
+        let mut rows = self.others;
         self.rows[blocks.start * columns..blocks.end * columns].chunks(R * columns).map(
             move |strip| {
                 let count = (4 * R - skip).min(rows.len());
@@ -77,9 +205,9 @@ impl<'a, Q: Quad> Panel<'a, Q> {
         x: &mut [[Q::Scalar; N]],
     ) {
         let columns = self.front.columns;
-        let start = self.front.first + columns;
+        let start = self.first + columns;
         let (done, later) = x.split_at_mut(start);
-        let y = &mut done[self.front.first..];
+        let y = &mut done[self.first..];
         // Right-hand sides are often zero but for a few rows.
         if y.iter().flatten().all(|&y| y == Q::Scalar::default()) {
             return;
@@ -127,9 +255,9 @@ impl<'a, Q: Quad> Panel<'a, Q> {
         sums: &mut [[Q; N]],
     ) {
         let columns = self.front.columns;
-        let start = self.front.first + columns;
+        let start = self.first + columns;
         let (done, later) = x.split_at_mut(start);
-        let y = &mut done[self.front.first..];
+        let y = &mut done[self.first..];
         let sums = &mut sums[..columns];
         sums.fill([Q::default(); N]);
         for (strip, skip, rows) in self.others::<R>() {

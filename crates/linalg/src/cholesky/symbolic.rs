@@ -7,7 +7,9 @@
 //! rows and columns are there but mean nothing. Block row `i` of an update matrix holds columns `0 .. 4 (i + 1)` only.
 
 use super::NONE;
+use super::forest::Forest;
 use super::fronts::{Fronts, Groups, Size};
+use super::pieces::Pieces;
 use crate::buckets::Buckets;
 use crate::pattern::Pattern;
 use std::ops::Range;
@@ -43,8 +45,8 @@ pub(super) struct Symbolic {
     pub(super) top_stacks: [usize; 2],
     /// Length of what the subtrees hand to the top.
     pub(super) handed: usize,
-    /// Columns of the front that has most.
-    pub(super) widest: usize,
+    /// Unknowns as solves number them.
+    pub(super) pieces: Pieces,
 }
 
 /// Neighbouring subtrees that are worked off together.
@@ -185,11 +187,12 @@ impl Symbolic {
             subtree_stacks: [0; 2],
             top_stacks: [0; 2],
             handed: 0,
-            widest: 0,
+            pieces: Pieces::default(),
         };
 
         symbolic.place_entries(pattern);
         symbolic.plan(&fronts.parent);
+        symbolic.pieces = Pieces::new(&symbolic, &fronts.parent);
         symbolic
     }
 
@@ -199,7 +202,7 @@ impl Symbolic {
     }
 
     pub(super) fn front(&self, s: usize) -> Front<'_> {
-        let range = self.row_offsets[s]..self.row_offsets[s + 1];
+        let range = self.row_range(s..s + 1);
         Front {
             first: self.pivots[s] as usize,
             columns: (self.pivots[s + 1] - self.pivots[s]) as usize,
@@ -227,6 +230,11 @@ impl Symbolic {
     /// Pivots of some fronts in a row.
     pub(super) fn pivots(&self, fronts: Range<usize>) -> Range<usize> {
         self.pivots[fronts.start] as usize..self.pivots[fronts.end] as usize
+    }
+
+    /// Where rows of some fronts in a row lie among those of all.
+    pub(super) fn row_range(&self, fronts: Range<usize>) -> Range<usize> {
+        self.row_offsets[fronts.start]..self.row_offsets[fronts.end]
     }
 
     /// The front in which each unknown is a pivot.
@@ -258,9 +266,8 @@ impl Symbolic {
             for (k, &row) in front.rows.iter().enumerate() {
                 place[row as usize] = (columns + k) as u32;
             }
-            self.widest = self.widest.max(columns);
             for &child in self.children.of(s) {
-                let range = self.row_offsets[child as usize]..self.row_offsets[child as usize + 1];
+                let range = self.row_range(child as usize..child as usize + 1);
                 for k in range.clone() {
                     self.places[k] = place[self.rows[k] as usize];
                 }
@@ -291,52 +298,27 @@ impl Symbolic {
         // Work of a front besides its operations, and what is too little for several threads: 50 microseconds.
         const FRONT: f64 = 2500.0;
         const LEAST: f64 = 1e6;
-        let m = self.len();
-        let mut first: Vec<usize> = (0..m).collect();
-        let mut work: Vec<f64> = (0..m).map(|s| self.front(s).work() + FRONT).collect();
         let parent_of = |s: usize| (parent[s] != NONE).then_some(parent[s] as usize);
-        for s in 0..m {
-            if let Some(p) = parent_of(s) {
-                first[p] = first[p].min(first[s]);
-                work[p] += work[s];
-            }
-        }
-        for s in (0..m).rev() {
+        for s in (0..self.len()).rev() {
             self.homes[s].side = parent_of(s).map_or(0, |p| 1 - self.homes[p].side);
         }
-        let total: f64 = self.children.of(m).iter().map(|&s| work[s as usize]).sum();
-        let most = (total / PARTS).max(LEAST);
-        let heavy = |s: usize| work[s] > most;
-        let mut together = 0.0;
-        for (s, &first) in first.iter().enumerate() {
-            if heavy(s) {
-                self.top.push(s);
-            } else if parent_of(s).is_none_or(heavy) {
-                let before = self.handed;
-                if parent_of(s).is_some() {
+        let work = (0..self.len()).map(|s| self.front(s).work() + FRONT).collect();
+        let forest = Forest::new(parent, work, PARTS, LEAST);
+        for fronts in forest.subtrees {
+            let before = self.handed;
+            for s in fronts.clone() {
+                if parent_of(s).is_some_and(|p| !fronts.contains(&p)) {
                     self.homes[s].handed = true;
-                    self.homes[s].offset = before;
+                    self.homes[s].offset = self.handed;
                     self.handed += self.front(s).update_len();
                 }
-                together += work[s];
-                match self.subtrees.last_mut() {
-                    Some(last) if last.fronts.end == first && together <= most => {
-                        last.fronts.end = s + 1;
-                        last.handed.end = self.handed;
-                    }
-                    _ => {
-                        together = work[s];
-                        let handed = before..self.handed;
-                        self.subtrees.push(Subtrees { fronts: first..s + 1, handed });
-                    }
-                }
             }
-        }
-        for subtrees in self.subtrees.clone() {
-            let heights = self.stack(subtrees.fronts);
+            let heights = self.stack(fronts.clone());
             self.subtree_stacks = [0, 1].map(|k| self.subtree_stacks[k].max(heights[k]));
+            self.subtrees.push(Subtrees { fronts, handed: before..self.handed });
         }
-        self.top_stacks = self.stack(self.top.clone().into_iter());
+        self.top_stacks = self.stack(forest.top.iter().copied());
+        self.top = forest.top;
     }
 
     /// Places the update matrices of fronts on the stacks; returns the heights that takes.

@@ -13,6 +13,7 @@ use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
 use seamstress_linalg::{Assembly, Buckets, Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Metric, TriMesh};
+use seamstress_parallel::both;
 use seamstress_parallel::prelude::*;
 use std::ops::Range;
 
@@ -82,16 +83,21 @@ impl LayoutProblem {
         order: Option<&[u32]>,
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
-            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
+            triangles.par_iter().map(|t| ElementMap::new(&space, t)).unzip();
         for wedges in penalty.iter().flat_map(SeamPenalty::elements) {
             elements.push(wedges.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect());
         }
-        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
-        let order = match order {
-            Some(order) => by_node(space.nodes(), order),
-            None => order_by_nodes(space.nodes(), &elements),
+        let cliques = || elements.iter().map(Vec::as_slice);
+        let pattern = Pattern::of_cliques(space.n_unknowns(), cliques());
+        let analyze = || {
+            let order = match order {
+                Some(order) => by_node(space.nodes(), order),
+                None => order_by_nodes(space.nodes(), &elements),
+            };
+            Cholesky::analyze(&pattern, &order)
         };
-        let cholesky = Cholesky::analyze(assembly.pattern(), &order)?;
+        let (cholesky, assembly) = both(analyze, || Assembly::new(pattern.clone(), cliques()));
+        let cholesky = cholesky?;
         Ok(Self {
             blocks: vec![0.0; assembly.blocks_len()],
             locals: vec![0.0; assembly.locals_len()],
@@ -123,7 +129,9 @@ impl LayoutProblem {
         };
         let free: Vec<Vec<u32>> = elements.iter().map(free).collect();
         let order = order_by_nodes(&space.nodes()[..n_free], &free);
-        let assembly = Assembly::new(space.n_unknowns(), elements.iter().map(Vec::as_slice));
+        let cliques = || elements.iter().map(Vec::as_slice);
+        let pattern = Pattern::of_cliques(space.n_unknowns(), cliques());
+        let assembly = Assembly::new(pattern, cliques());
         let leading = LeadingBlock::new(assembly.pattern(), n_free);
         let cholesky = Cholesky::analyze(&leading.pattern, &order)?;
         Ok(Self {

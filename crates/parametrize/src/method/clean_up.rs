@@ -6,7 +6,7 @@ use super::relaxed::RelaxedLayout;
 use super::{MapOptions, Purpose, Start};
 use crate::cut::FramedCut;
 use crate::progress::{SolveError, Watch, unless_cancelled};
-use crate::rounding::{self, CleanUpOptions, ConeCount, fix_holonomy};
+use crate::rounding::{self, CleanUpOptions, ConeCount, Holonomy};
 
 /// Price of a cone of a map that is an end in itself, and how far its index may be from the curvature.
 const MAP_PRICE: f64 = 0.0005;
@@ -102,7 +102,7 @@ pub(super) fn clean_up(
         return Ok(None);
     }
     watch.pulse()?;
-    let start = fix_holonomy(sectors, metric, start, domain.guide.as_ref())?;
+    let start = Holonomy::new(sectors, metric, domain.guide.as_ref())?.fix(start);
     watch.pulse()?;
     let worth = price * f64::from(stats.saved);
     Ok(Some(Cleaned { start, estimate: stats.energy, worth }))

@@ -13,7 +13,7 @@ use super::{MapOptions, MethodError, Start, lay_out_directly};
 use crate::cut::{FramedCut, MatchedCut, Unfolding};
 use crate::layout::ladder::LayoutEffort;
 use crate::progress::{Stage, Watch, unless_cancelled};
-use crate::rounding::{Rounding, RoundingStats, RoundingStrategy, fix_holonomy};
+use crate::rounding::{Holonomy, Rounding, RoundingStats, RoundingStrategy};
 use num_complex::Complex64;
 use seamstress_mesh::coarse::{Coarsening, coarsen};
 use seamstress_mesh::features::EdgeSet;
@@ -95,22 +95,22 @@ pub(super) fn scout(
     if !is_worthwhile(domain, start, options) {
         return Ok(None);
     }
+    let (sectors, metric) = (&domain.sectors, &domain.metric);
+    // The fine mesh will need it, and no other work is as hard to share.
+    let mut holonomy = None;
     let coarse = beside(
-        // The fine mesh will need it, and no other work is as hard to share.
-        || {
-            domain.sectors.dissection();
-        },
+        || holonomy = Some(Holonomy::new(sectors, metric, None)),
         || coarse_cones(domain, options, log, watch),
     );
     let Some(Coarse { stats, excess, index }) = coarse? else { return Ok(None) };
     log.enter(Stage::Layout, watch)?;
-    let (sectors, metric) = (&domain.sectors, &domain.metric);
     let matched = MatchedCut::with_indices(sectors, metric, unfolding.clone(), &index);
     let frames = vec![Complex64::ONE; domain.mesh().n_faces()];
     let placed = Rounding { start: FramedCut { matched, frames }, stats };
     let Ok(Rounding { start, stats }) = repaired(domain, placed) else { return Ok(None) };
     watch.pulse()?;
-    let start = fix_holonomy(sectors, metric, start, None)?;
+    let Some(holonomy) = holonomy else { return Ok(None) };
+    let start = holonomy?.fix(start);
     let Some(layout) = lay_out_cleaned(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
     Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))

@@ -12,7 +12,7 @@ use crate::field::{
 use crate::layout::exact::Defects;
 use crate::map::{Violation, Violations};
 use crate::progress::Watch;
-use crate::rounding::{Repair, Rounding, RoundingStats, fix_holonomy, repair, round};
+use crate::rounding::{Holonomy, Repair, Rounding, RoundingStats, repair, round};
 use seamstress_mesh::{Component, TriMesh};
 
 /// What a map starts from.
@@ -128,7 +128,7 @@ fn with_cones(
         return Ok(rounding);
     }
     let start = FramedCut { matched, frames: rounding.start.frames };
-    let start = fix_holonomy(sectors, metric, start, domain.guide.as_ref())?;
+    let start = Holonomy::new(sectors, metric, domain.guide.as_ref())?.fix(start);
     let stats = RoundingStats { shifted_seams: shifts, ..rounding.stats };
     Ok(Rounding { start, stats })
 }

@@ -14,7 +14,7 @@ mod system;
 mod weights;
 
 pub use clean_up::{CleanUpOptions, CleanUpStats, ConeCount, clean_up};
-pub use holonomy::fix_holonomy;
+pub use holonomy::Holonomy;
 pub use options::{RoundingOptions, RoundingStrategy};
 pub use repair::{Repair, repair};
 pub use surrogate::Surrogate;
