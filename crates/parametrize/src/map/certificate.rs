@@ -2,7 +2,7 @@
 
 use seamstress_certify::{
     Alignment, AlignmentTolerance, Certificate, Cone, IntegerCertificate, IntegralTolerance, Map,
-    Seam, Tolerance, Violations,
+    Seam, Seamless, Tolerance, Violations,
 };
 use seamstress_mesh::{Halfedge, TriMesh};
 
@@ -49,8 +49,29 @@ impl SeamlessMap {
         tolerance: &Tolerance,
     ) -> Result<Self, Violations> {
         let found = checked(mesh, &corner_uvs)?.seamless(tolerance)?;
-        let seams = found.seams.into_iter().map(SeamEdge::from).collect();
-        Ok(Self { corner_uvs, cones: found.cones, seams, certificate: found.certificate })
+        Ok(Self::found(corner_uvs, found))
+    }
+
+    /// The same, with [`Self::alignment`].
+    ///
+    /// # Errors
+    /// Every violation of the map or, if there is none, of its alignment.
+    pub(crate) fn certify_aligned(
+        mesh: &TriMesh,
+        corner_uvs: Vec<[f64; 2]>,
+        edges: &[[u32; 2]],
+        tolerance: &Tolerance,
+    ) -> Result<(Self, Alignment), Violations> {
+        let map = checked(mesh, &corner_uvs)?;
+        let found = map.seamless(tolerance)?;
+        let alignment = map.alignment(edges, &AlignmentTolerance::default())?;
+        Ok((Self::found(corner_uvs, found), alignment))
+    }
+
+    fn found(corner_uvs: Vec<[f64; 2]>, found: Seamless) -> Self {
+        let Seamless { cones, seams, certificate, .. } = found;
+        let seams = seams.into_iter().map(SeamEdge::from).collect();
+        Self { corner_uvs, cones, seams, certificate }
     }
 
     /// Certifies that edges, given by their end vertices, run along the axes of this map of a mesh, by
@@ -84,6 +105,11 @@ impl SeamlessMap {
     /// One UV per corner, three per face.
     pub fn corner_uvs(&self) -> &[[f64; 2]] {
         &self.corner_uvs
+    }
+
+    /// Its UVs.
+    pub(crate) fn into_corner_uvs(self) -> Vec<[f64; 2]> {
+        self.corner_uvs
     }
 
     /// Interior vertices with an angle other than a full turn, ascending.

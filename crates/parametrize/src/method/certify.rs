@@ -5,7 +5,7 @@ use super::log::StageLog;
 use super::{ComponentStats, MethodError};
 use crate::features::ReleasedFeature;
 use crate::layout::route::Route;
-use crate::map::{AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use crate::map::{SeamlessMap, Tolerance, Violations};
 use crate::rounding::RoundingStats;
 use seamstress_mesh::features::EdgeSet;
 
@@ -56,14 +56,10 @@ pub(super) fn last_certified(
 ) -> Result<Vec<[f64; 2]>, MethodError> {
     let mesh = domain.mesh();
     let aligned = domain.features().vertex_pairs(mesh);
-    let certify = |uvs: &Vec<[f64; 2]>| {
-        let map = SeamlessMap::certify(mesh, uvs.clone(), tolerance)?;
-        map.alignment(mesh, &aligned, &AlignmentTolerance::default())
-    };
     let mut failure = Violations(Vec::new());
     for uvs in candidates.into_iter().rev() {
-        match certify(&uvs) {
-            Ok(_) => return Ok(uvs),
+        match SeamlessMap::certify_aligned(mesh, uvs, &aligned, tolerance) {
+            Ok((map, _)) => return Ok(map.into_corner_uvs()),
             Err(violations) => failure = violations,
         }
     }

@@ -204,13 +204,8 @@ fn improve(
     };
     let uvs = corner_uvs(mesh, metric, &layout, &y);
     let pairs = features.vertex_pairs(mesh);
-    let certify = || {
-        let better = SeamlessMap::certify(mesh, uvs, &options.tolerance)?;
-        better.alignment(mesh, &pairs, &AlignmentTolerance::default())?;
-        Ok(better)
-    };
-    match certify() {
-        Ok(better) => Ok((better.corner_uvs().to_vec(), stats(value, ending))),
+    match SeamlessMap::certify_aligned(mesh, uvs, &pairs, &options.tolerance) {
+        Ok((better, _)) => Ok((better.into_corner_uvs(), stats(value, ending))),
         // The map given may not keep the bound.
         Err(violations) if options.settings.dilatation_bound.is_some() => {
             Err(MethodError::Uncertified(violations))

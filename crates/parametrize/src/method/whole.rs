@@ -2,7 +2,7 @@
 
 use super::MapError;
 use crate::features::ReleasedFeature;
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance};
+use crate::map::{Alignment, SeamlessMap, Tolerance};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Halfedge, TriMesh, Vertex};
 
@@ -47,10 +47,9 @@ impl FeatureTally {
         if is_strict && !released.is_empty() {
             return Err(MapError::Released { released });
         }
-        let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
         let features = EdgeSet::new(mesh, kept);
         let pairs = features.vertex_pairs(mesh);
-        let alignment = map.alignment(mesh, &pairs, &AlignmentTolerance::default())?;
+        let (map, alignment) = SeamlessMap::certify_aligned(mesh, corner_uvs, &pairs, tolerance)?;
         Ok(AlignedMap { map, features, alignment, released })
     }
 }
