@@ -4,6 +4,7 @@
 //! Heckbert 1997). This goes in rounds: in each, collapses that do not touch each other are done together. No vertex
 //! moves, and the topology stays.
 
+use crate::directed::Directed;
 use crate::vector::{Point, cross, dot, norm, sub};
 use seamstress_parallel::prelude::*;
 
@@ -38,13 +39,13 @@ pub fn coarsen(
     n_faces: usize,
     kept: &[u32],
 ) -> Coarsening {
-    let mut quadrics = quadrics(positions, faces);
+    let (mut quadrics, on_boundary) = quadrics(positions, faces);
     let mut is_kept = vec![false; positions.len()];
     kept.iter().for_each(|&vertex| is_kept[vertex as usize] = true);
     let mut faces: Vec<(u32, [u32; 3])> = (0..).zip(faces.iter().copied()).collect();
     while faces.len() > n_faces {
         let before = faces.len();
-        let round = Round::new(positions, &faces, &quadrics);
+        let round = Round::new(positions, &faces, &quadrics, &on_boundary);
         let target = round.collapses(&is_kept, (faces.len() - n_faces).div_ceil(2));
         for (from, &to) in target.iter().enumerate().filter(|&(from, &to)| from != to as usize) {
             let moved = quadrics[from];
@@ -100,25 +101,26 @@ impl Quadric {
     }
 }
 
-/// The planes of the faces around each vertex, and planes across the boundary.
-fn quadrics(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<Quadric> {
-    let mut sides: Vec<[u32; 2]> =
-        faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-    sides.sort_unstable();
+/// The planes of the faces around each vertex, and planes across the boundary; and which vertices lie on it.
+fn quadrics(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> (Vec<Quadric>, Vec<bool>) {
+    let directed = Directed::new(positions.len(), faces);
     let mut quadrics = vec![Quadric::default(); positions.len()];
+    let mut on_boundary = vec![false; positions.len()];
     for face in faces {
         let [a, b, c] = face.map(|v| positions[v as usize]);
         let normal = cross(sub(b, a), sub(c, a));
         let size = norm(normal);
-        if size == 0.0 {
-            continue;
-        }
         let unit = normal.map(|x| x / size);
-        let plane = Quadric::of_plane(unit, a, size / 2.0);
+        let plane = (size > 0.0).then(|| Quadric::of_plane(unit, a, size / 2.0));
         for k in 0..3 {
-            quadrics[face[k] as usize].add(&plane);
             let [from, to] = [face[k], face[(k + 1) % 3]];
-            if sides.binary_search(&[to, from]).is_err() {
+            let on_rim = directed.find(to, from).is_none();
+            if on_rim {
+                [from, to].iter().for_each(|&v| on_boundary[v as usize] = true);
+            }
+            let Some(plane) = &plane else { continue };
+            quadrics[from as usize].add(plane);
+            if on_rim {
                 let along = sub(positions[to as usize], positions[from as usize]);
                 let across = cross(along, unit);
                 let length = norm(across);
@@ -131,7 +133,7 @@ fn quadrics(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<Quadric> {
             }
         }
     }
-    quadrics
+    (quadrics, on_boundary)
 }
 
 /// Room for the rings of two vertices, and for what it costs to go to those of the first.
@@ -147,6 +149,7 @@ struct Round<'a> {
     positions: &'a [[f64; 3]],
     faces: &'a [(u32, [u32; 3])],
     quadrics: &'a [Quadric],
+    on_boundary: &'a [bool],
     /// The faces around each vertex, one list after the other, and where each starts.
     around: Vec<u32>,
     starts: Vec<u32>,
@@ -157,6 +160,7 @@ impl<'a> Round<'a> {
         positions: &'a [[f64; 3]],
         faces: &'a [(u32, [u32; 3])],
         quadrics: &'a [Quadric],
+        on_boundary: &'a [bool],
     ) -> Self {
         let mut starts = vec![0u32; positions.len() + 1];
         faces.iter().flat_map(|(_, face)| face).for_each(|&v| starts[v as usize + 1] += 1);
@@ -169,7 +173,7 @@ impl<'a> Round<'a> {
                 next[v as usize] += 1;
             }
         }
-        Self { positions, faces, quadrics, around, starts }
+        Self { positions, faces, quadrics, on_boundary, around, starts }
     }
 
     fn star(&self, vertex: u32) -> &[u32] {
@@ -183,9 +187,18 @@ impl<'a> Round<'a> {
 
     /// The vertices that share an edge with one, ascending.
     fn ring(&self, vertex: u32, ring: &mut Vec<u32>) {
+        let others = |&face: &u32| match self.face(face) {
+            [a, b, c] if a == vertex => [b, c],
+            [a, b, c] if b == vertex => [c, a],
+            [a, b, _] => [a, b],
+        };
+        let sides = self.star(vertex).iter().map(others);
         ring.clear();
-        let corners = self.star(vertex).iter().flat_map(|&face| self.face(face));
-        ring.extend(corners.filter(|&v| v != vertex));
+        // A neighbour across an inner edge comes first in one face and last in another.
+        ring.extend(sides.clone().map(|[first, _]| first));
+        if self.on_boundary[vertex as usize] {
+            ring.extend(sides.map(|[_, last]| last));
+        }
         ring.sort_unstable();
         ring.dedup();
     }
@@ -242,7 +255,7 @@ impl<'a> Round<'a> {
 
     /// Whether a collapse leaves a manifold of the same topology, and turns no face much.
     fn may_collapse(&self, from: u32, to: u32, ring: &[u32], other: &[u32]) -> bool {
-        let is_boundary = ring.len() != self.star(from).len();
+        let is_boundary = self.on_boundary[from as usize];
         let is_in = |v: &u32, ring: &[u32]| ring.binary_search(v).is_ok();
         let is_common = |v: &u32| is_in(v, ring) && is_in(v, other);
         let has_to = |&&face: &&u32| self.face(face).contains(&to);

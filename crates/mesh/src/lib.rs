@@ -16,6 +16,7 @@
 pub mod attributes;
 pub mod coarse;
 pub mod components;
+mod directed;
 pub mod features;
 mod flat;
 mod geometry;

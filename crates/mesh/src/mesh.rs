@@ -1,7 +1,7 @@
 //! Half-edge connectivity of an oriented triangle manifold.
 
+use crate::directed::Directed;
 use crate::ids::{Face, FaceData, Halfedge, HalfedgeData, Vertex, VertexData};
-use std::collections::HashMap;
 
 const NONE: u32 = u32::MAX;
 
@@ -61,17 +61,15 @@ impl TriMesh {
         if faces.len() > (u32::MAX / 4) as usize {
             return Err(MeshError::TooManyFaces);
         }
-        let mut directed = HashMap::with_capacity(3 * faces.len());
-        for (f, &[a, b, c]) in faces.iter().enumerate() {
-            let face = f as u32;
-            if [a, b, c].iter().any(|&v| v as usize >= n_vertices) || a == b || b == c || c == a {
-                return Err(MeshError::BadFace { face, n_vertices });
-            }
-            for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-                if directed.insert((from, to), 3 * face + k as u32).is_some() {
-                    return Err(MeshError::RepeatedHalfedge { from, to, face });
-                }
-            }
+        let is_bad = |&[a, b, c]: &[u32; 3]| {
+            [a, b, c].iter().any(|&v| v as usize >= n_vertices) || a == b || b == c || c == a
+        };
+        if let Some(face) = faces.iter().position(is_bad) {
+            return Err(MeshError::BadFace { face: face as u32, n_vertices });
+        }
+        let directed = Directed::new(n_vertices, faces);
+        if let Some((from, to, h)) = directed.first_repeated() {
+            return Err(MeshError::RepeatedHalfedge { from, to, face: h / 3 });
         }
         let origin: HalfedgeData<Vertex> = faces.iter().flatten().map(|&v| Vertex(v)).collect();
         let mut mesh = TriMesh {
@@ -82,7 +80,7 @@ impl TriMesh {
         };
         for h in mesh.halfedges() {
             let (from, to) = (mesh.origin(h), mesh.tip(h));
-            if let Some(&t) = directed.get(&(to.0, from.0)) {
+            if let Some(t) = directed.find(to.0, from.0) {
                 mesh.twin[h] = t;
             } else {
                 mesh.boundary[from] = true;
