@@ -191,9 +191,9 @@ impl ExactLayout {
                 .collect();
             space = leveled(&space, &levels);
         }
-        let order = induced_order(sectors, &cut, &space);
-        let problem =
-            LayoutProblem::ordered(space, triangles(mesh, metric, &cut), None, Some(&order))?;
+        let problem = LayoutProblem::ordered(space, triangles(mesh, metric, &cut), |space| {
+            node_order(sectors, &cut, space)
+        })?;
         Ok(Self { cut, matching, gauge, index, problem })
     }
 
@@ -351,9 +351,9 @@ impl ExactLayout {
     }
 }
 
-/// The order of the unknowns of a space that follows from that of the vertices: a node lies at every vertex at one of whose
+/// The order of the nodes of a space that follows from that of the vertices: a node lies at every vertex at one of whose
 /// wedges its unknowns count.
-fn induced_order(sectors: &Sectors<'_>, cut: &Cut, space: &LinearSpace) -> Vec<u32> {
+fn node_order(sectors: &Sectors<'_>, cut: &Cut, space: &LinearSpace) -> Vec<u32> {
     let (mesh, nodes) = (sectors.mesh(), space.nodes());
     let n_nodes = nodes.last().map_or(0, |&last| last as usize + 1);
     let lies = mesh.halfedges().flat_map(|h| {

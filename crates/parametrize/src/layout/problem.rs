@@ -69,18 +69,29 @@ impl LayoutProblem {
         triangles: Vec<Triangle>,
         penalty: Option<SeamPenalty>,
     ) -> Result<Self, NotPositiveDefinite> {
-        Self::ordered(space, triangles, penalty, None)
+        Self::prepared(space, triangles, penalty, |space, elements| {
+            order_by_nodes(space.nodes(), elements)
+        })
     }
 
-    /// The same with a given order of the nodes of the space.
+    /// The same with a given order of the nodes of the space, and without a penalty.
     ///
     /// # Errors
     /// As [`LayoutProblem::new`].
-    pub fn ordered(
+    pub(crate) fn ordered(
+        space: LinearSpace,
+        triangles: Vec<Triangle>,
+        order: impl FnOnce(&LinearSpace) -> Vec<u32> + Send,
+    ) -> Result<Self, NotPositiveDefinite> {
+        Self::prepared(space, triangles, None, |space, _| by_node(space.nodes(), &order(space)))
+    }
+
+    /// With an order of the unknowns that follows from the space and the unknowns of the elements.
+    fn prepared(
         space: LinearSpace,
         triangles: Vec<Triangle>,
         penalty: Option<SeamPenalty>,
-        order: Option<&[u32]>,
+        order: impl FnOnce(&LinearSpace, &[Vec<u32>]) -> Vec<u32> + Send,
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
             triangles.par_iter().map(|t| ElementMap::new(&space, t)).unzip();
@@ -89,13 +100,7 @@ impl LayoutProblem {
         }
         let cliques = || elements.iter().map(Vec::as_slice);
         let pattern = Pattern::of_cliques(space.n_unknowns(), cliques());
-        let analyze = || {
-            let order = match order {
-                Some(order) => by_node(space.nodes(), order),
-                None => order_by_nodes(space.nodes(), &elements),
-            };
-            Cholesky::analyze(&pattern, &order)
-        };
+        let analyze = || Cholesky::analyze(&pattern, &order(&space, &elements));
         let (cholesky, assembly) = both(analyze, || Assembly::new(pattern.clone(), cliques()));
         let cholesky = cholesky?;
         Ok(Self {

@@ -8,6 +8,7 @@ use crate::progress::Observer;
 use crate::quality::distortion;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Geometry, TriMesh};
+use seamstress_parallel::both;
 
 /// Makes a seamless map of every component of a mesh, with nothing aligned; see [`make_aligned_map`].
 ///
@@ -80,8 +81,10 @@ fn run(
             tally.add(piece, &mapped.features, &mapped.released);
             Ok((mapped.corner_uvs, mapped.stats))
         })?;
-    let AlignedMap { map, features, alignment, released } =
-        tally.certify(mesh, corner_uvs, options.strict_features, &options.tolerance)?;
-    let distortion = distortion(mesh, &geometry.metric(mesh), map.corner_uvs());
+    let (certified, distortion) = both(
+        || tally.certify(mesh, corner_uvs.clone(), options.strict_features, &options.tolerance),
+        || distortion(mesh, &geometry.metric(mesh), &corner_uvs),
+    );
+    let AlignedMap { map, features, alignment, released } = certified?;
     Ok(MapSolution { map, distortion, features, alignment, released, components })
 }

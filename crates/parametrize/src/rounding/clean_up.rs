@@ -9,6 +9,8 @@ use crate::ordered::Ordered;
 use crate::progress::{Cancelled, SolveError, Watch};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, Vertex, VertexData};
+use seamstress_parallel::both;
+use seamstress_parallel::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::FRAC_PI_2;
@@ -180,9 +182,12 @@ impl<'a> CleanUp<'a> {
 
     /// Finds where some cones may go, and what they change.
     fn look_around(&mut self, cones: &[Vertex]) {
-        let responses = self.surrogate.responses(cones);
-        for (&s, response) in cones.iter().zip(responses) {
-            let ball = self.search.around(s);
+        let (surrogate, search) = (&self.surrogate, &mut self.search);
+        let (responses, balls) = both(
+            || surrogate.responses(cones),
+            || cones.iter().map(|&s| search.around(s)).collect::<Vec<_>>(),
+        );
+        for ((&s, ball), response) in cones.iter().zip(balls).zip(responses) {
             self.reach.insert(s, Reach { ball, response });
         }
     }
@@ -286,11 +291,10 @@ impl<'a> CleanUp<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<(usize, usize), Cancelled> {
         let (mut cancelled, mut moved) = (0, 0);
-        let mut queue: BinaryHeap<(Ordered, Reverse<Vertex>, usize)> = BinaryHeap::new();
-        for s in self.cones() {
-            let best = self.best(s, cancels_only);
-            queue.extend(best.map(|best| (Ordered(best.profit), Reverse(s), 0)));
-        }
+        let cones = self.cones();
+        let best: Vec<_> = cones.par_iter().map(|&s| self.best(s, cancels_only)).collect();
+        let of = |best: Move| (Ordered(best.profit), Reverse(best.s), 0);
+        let mut queue: BinaryHeap<_> = best.into_iter().flatten().map(of).collect();
         while !queue.is_empty() {
             watch.pulse()?;
             let sent = cancelled + moved;
