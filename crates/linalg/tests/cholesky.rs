@@ -274,6 +274,8 @@ fn grids_with_one_two_and_three_unknowns_per_point() {
         check(&grid::<f64>(20, unknowns));
         check(&grid::<Complex64>(20, unknowns));
     }
+    // Large enough for several pieces.
+    check(&grid::<f64>(60, 2));
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use crate::error::{Error, ErrorKind, Stage};
 use crate::files::read_mesh;
 use crate::finding::Finding;
-use crate::inspection::{Inspection, SurfaceOptions};
+use crate::inspection::Inspection;
 use crate::surface::Surface;
+use crate::surface_options::SurfaceOptions;
 use seamstress_io::PolygonMesh;
 use seamstress_parametrize::map::compare_source;
 use seamstress_parametrize::{Violation, Violations};

@@ -53,6 +53,7 @@
 mod as_text;
 mod attributes;
 mod certify;
+mod checked;
 #[doc(hidden)]
 pub mod command_reports;
 mod context;
@@ -101,6 +102,7 @@ mod seamless_start;
 mod size_sources;
 mod sizes;
 mod surface;
+mod surface_options;
 mod symmetric;
 mod symmetry;
 #[doc(hidden)]
@@ -124,7 +126,7 @@ pub use finding::{Elements, Finding, Severity};
 #[cfg(feature = "io")]
 pub use given::MapFile;
 pub use grid_size::GridSize;
-pub use inspection::{Inspection, SurfaceOptions, Weld};
+pub use inspection::Inspection;
 pub use integer::{GridReport, IntegerGridMap, IntegerMapReport};
 #[doc(hidden)]
 pub use map::Described;
@@ -158,6 +160,7 @@ pub use schema::schemas;
 pub use size_sources::SizeSource;
 pub use sizes::SizeReport;
 pub use surface::Surface;
+pub use surface_options::{SurfaceOptions, Weld};
 pub use symmetry::{Symmetry, SymmetryPlane, SymmetryReport};
 
 #[cfg(feature = "io")]

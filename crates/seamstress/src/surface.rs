@@ -3,8 +3,9 @@
 use crate::context::Context;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::finding::Finding;
-use crate::inspection::{Inspection, Parts, SurfaceOptions};
+use crate::inspection::{Inspection, Parts};
 use crate::report::SurfaceReport;
+use crate::surface_options::SurfaceOptions;
 use seamstress_mesh::attributes::Attributes;
 #[cfg(all(feature = "io", feature = "page"))]
 use seamstress_mesh::coarse::coarsen;

@@ -54,11 +54,13 @@ mod tests {
         // 0 and 1 below 2; 3 below 4; 2, 4 and 5 below 6.
         let parent = [2, 2, 6, 4, 6, 6, NONE];
         let work = vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 1.0];
-        let cut = |parts| Forest::new(&parent, work.clone(), parts, 0.0);
-        assert_eq!((cut(1.0).subtrees, cut(1.0).top), (vec![0..7], vec![]));
-        assert_eq!((cut(2.0).subtrees, cut(2.0).top), (vec![0..3, 3..6], vec![6]));
-        assert_eq!((cut(4.0).subtrees, cut(4.0).top), (vec![0..2, 3..5, 5..6], vec![2, 6]));
-        let least = Forest::new(&parent, work.clone(), 4.0, 8.0);
-        assert_eq!((least.subtrees, least.top), (vec![0..7], vec![]));
+        let cut = |parts, least| {
+            let Forest { subtrees, top } = Forest::new(&parent, work.clone(), parts, least);
+            (subtrees.into_iter().map(|fronts| (fronts.start, fronts.end)).collect::<Vec<_>>(), top)
+        };
+        assert_eq!(cut(1.0, 0.0), (vec![(0, 7)], vec![]));
+        assert_eq!(cut(2.0, 0.0), (vec![(0, 3), (3, 6)], vec![6]));
+        assert_eq!(cut(4.0, 0.0), (vec![(0, 2), (3, 5), (5, 6)], vec![2, 6]));
+        assert_eq!(cut(4.0, 8.0), (vec![(0, 7)], vec![]));
     }
 }

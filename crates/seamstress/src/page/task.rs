@@ -6,12 +6,13 @@ use crate::context::Context;
 use crate::error::{Error, ErrorKind};
 use crate::feature_sources::{FeatureSource, Features};
 use crate::files::Output;
-use crate::inspection::{Inspection, SurfaceOptions};
+use crate::inspection::Inspection;
 use crate::integer::IntegerGridMap;
 use crate::map::{SeamlessMap, UvSet};
 use crate::options::{IntegerMapOptions, MapOptions, QuadOptions};
 use crate::quads::QuadMesh;
 use crate::surface::Surface;
+use crate::surface_options::SurfaceOptions;
 use serde::Deserialize;
 use std::path::Path;
 
