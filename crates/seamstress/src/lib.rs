@@ -82,6 +82,7 @@ mod memory;
 mod mesh_format;
 mod mirrored;
 mod named;
+mod no_map;
 mod optimize;
 mod options;
 mod packing;
