@@ -2,14 +2,14 @@
 
 use crate::manifold::Manifold;
 use crate::map::Map;
-use crate::plane::{Point, angle};
-use crate::tolerance::{AlignmentTolerance, within};
+use crate::plane::{degrees_off_axis, difference, scaled};
+use crate::tolerance::{ANGLE, AlignmentTolerance, within};
 use crate::violation::{Violation, Violations};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// What was checked of the edges of a map that have to run along its axes, and what was found.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Alignment {
@@ -40,11 +40,12 @@ pub(crate) struct Edges {
     contains: Vec<bool>,
 }
 
-/// The corners around a vertex between two edges of a set, counter-clockwise.
+/// What lies around a vertex between two edges of a set.
 struct Sector {
-    corners: Vec<usize>,
-    /// Whether it ends at a boundary edge that does not belong to the set: then nothing fixes its angle.
-    is_free: bool,
+    /// The other ends of the edges, counter-clockwise.
+    between: [u32; 2],
+    /// The angle from one to the other, quarter turns.
+    quarters: f64,
 }
 
 impl Map<'_> {
@@ -61,18 +62,31 @@ impl Map<'_> {
         tolerance: &AlignmentTolerance,
     ) -> Result<Alignment, Violations> {
         let (aligned, mut violations) = self.edges_between(edges);
-        let mut figures = Alignment {
-            edges: aligned.edges.len(),
-            boundary_edges: 0,
-            sides: 0,
-            exact_sides: 0,
-            axis_error: 0.0,
-            sectors: 0,
-            sectors_by_quarters: BTreeMap::new(),
-            sector_error: 0.0,
-        };
-        self.axes(&aligned, tolerance.axis(), &mut figures, &mut violations);
-        self.angles(&aligned, tolerance.sector(), &mut figures, &mut violations);
+        let mut figures = Alignment { edges: aligned.edges.len(), ..Alignment::default() };
+        for side in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
+            let [from, to] = scaled(self.image(side)).0;
+            let degrees = degrees_off_axis(difference(to, from));
+            figures.boundary_edges += usize::from(self.mesh.twin(side).is_none());
+            figures.sides += 1;
+            figures.exact_sides += usize::from(from[0] == to[0] || from[1] == to[1]);
+            figures.axis_error = figures.axis_error.max(degrees);
+            if !within(degrees, tolerance.axis()) {
+                let (vertices, face) = (self.mesh.ends(side), Manifold::<3>::face(side));
+                violations.push(Violation::OffAxis { vertices, face, degrees });
+            }
+        }
+        for vertex in self.mesh.vertices() {
+            for Sector { between, quarters } in self.sectors(vertex, &aligned) {
+                let nearest = quarters.round();
+                let off = (quarters - nearest).abs() * FRAC_PI_2;
+                figures.sectors += 1;
+                *figures.sectors_by_quarters.entry(nearest as u32).or_default() += 1;
+                figures.sector_error = figures.sector_error.max(off);
+                if !within(off, ANGLE) || nearest < 1.0 {
+                    violations.push(Violation::SectorAngle { vertex, between, quarters });
+                }
+            }
+        }
         Violations::unless_none(violations).map(|()| figures)
     }
 
@@ -81,159 +95,44 @@ impl Map<'_> {
         let mut contains = vec![false; self.mesh.halfedges().count()];
         let mut violations = Vec::new();
         for &vertices in pairs {
-            let [a, b] = vertices;
-            let Some(h) = self.mesh.edge_between(a, b) else {
-                violations.push(Violation::NotAnEdge { vertices });
-                continue;
-            };
-            std::iter::once(h).chain(self.mesh.twin(h)).for_each(|side| contains[side] = true);
-        }
-        (
-            Edges { edges: self.mesh.edges().filter(|&h| contains[h]).collect(), contains },
-            violations,
-        )
-    }
-
-    /// The image of a half-edge, halved so that it does not overflow.
-    fn image(&self, h: usize) -> Point {
-        let [from, to] = [h, self.mesh.next(h)].map(|corner| self.uv(corner));
-        [0, 1].map(|k| 0.5 * to[k] - 0.5 * from[k])
-    }
-
-    fn axes(
-        &self,
-        aligned: &Edges,
-        tolerance: f64,
-        figures: &mut Alignment,
-        violations: &mut Vec<Violation>,
-    ) {
-        for &edge in &aligned.edges {
-            let twin = self.mesh.twin(edge);
-            figures.boundary_edges += usize::from(twin.is_none());
-            for side in std::iter::once(edge).chain(twin) {
-                let image = self.image(side);
-                let degrees = degrees_off_axis(image);
-                figures.sides += 1;
-                figures.exact_sides += usize::from(image.contains(&0.0));
-                figures.axis_error = figures.axis_error.max(degrees);
-                if !within(degrees, tolerance) {
-                    let (vertices, face) = (self.mesh.ends(edge), Manifold::<3>::face(side));
-                    violations.push(Violation::OffAxis { vertices, face, degrees });
-                }
+            match self.mesh.edge_between(vertices[0], vertices[1]) {
+                Some(h) => self.mesh.sides(h).for_each(|side| contains[side] = true),
+                None => violations.push(Violation::NotAnEdge { vertices }),
             }
         }
-    }
-
-    fn angles(
-        &self,
-        aligned: &Edges,
-        tolerance: f64,
-        figures: &mut Alignment,
-        violations: &mut Vec<Violation>,
-    ) {
-        for vertex in self.mesh.vertices().filter(|&v| self.edges_around(v, aligned) > 0) {
-            for sector in self.sectors(vertex, aligned).iter().filter(|sector| !sector.is_free) {
-                let quarters = self.quarters_of(sector);
-                let nearest = quarters.round();
-                let off = (quarters - nearest).abs() * FRAC_PI_2;
-                figures.sectors += 1;
-                *figures.sectors_by_quarters.entry(nearest as u32).or_default() += 1;
-                figures.sector_error = figures.sector_error.max(off);
-                if !within(off, tolerance) || nearest < 1.0 {
-                    let between = self.sides(sector);
-                    violations.push(Violation::SectorAngle { vertex, between, quarters });
-                }
-            }
-        }
+        let edges = self.mesh.edges().filter(|&h| contains[h]).collect();
+        (Edges { edges, contains }, violations)
     }
 
     /// Whether edges turn at a vertex: two of them end there, with a sector that is not straight, or with more than one at a
     /// boundary, which then turns back.
     pub(crate) fn is_turning_point(&self, vertex: u32, edges: &Edges) -> bool {
         let sectors = self.sectors(vertex, edges);
-        let between: Vec<&Sector> = sectors.iter().filter(|sector| !sector.is_free).collect();
-        let turns = between.iter().any(|sector| self.quarters_of(sector).round() != 2.0);
-        let turns_back = self.mesh.is_boundary(vertex) && between.len() > 1;
-        self.edges_around(vertex, edges) > 1 && (turns || turns_back)
+        let is_straight = |sector: &Sector| sector.quarters.round() == 2.0;
+        // At the boundary two edges have one sector between them.
+        match (self.mesh.is_interior(vertex), sectors.len()) {
+            (_, 0) | (Some(true), 1) => false,
+            (Some(false), 2..) => true,
+            _ => !sectors.iter().all(is_straight),
+        }
     }
 
-    /// How many edges of a set end at a vertex.
-    fn edges_around(&self, vertex: u32, edges: &Edges) -> usize {
-        let ends = |corner: usize| {
-            let last = self.mesh.prev(corner);
-            usize::from(edges.contains[corner])
-                + usize::from(edges.contains[last] && self.mesh.twin(last).is_none())
-        };
-        self.mesh.fan(vertex).map(ends).sum()
-    }
-
-    /// The sectors around a vertex, counter-clockwise; one with all corners if a single edge of the set ends there.
+    /// The sectors around a vertex between each edge of a set that ends there and the next one, counter-clockwise; the
+    /// whole turn around the end of a single edge. What lies between such an edge and a boundary edge that is not in the
+    /// set is no sector: nothing fixes its angle.
     fn sectors(&self, vertex: u32, edges: &Edges) -> Vec<Sector> {
         let mut corners: Vec<usize> = self.mesh.fan(vertex).collect();
-        let is_boundary = self.mesh.is_boundary(vertex);
-        if !is_boundary {
+        if self.mesh.is_interior(vertex) == Some(true) {
             let start = corners.iter().position(|&h| edges.contains[h]);
             corners.rotate_left(start.unwrap_or(0));
         }
-        let ends = |h: &usize| is_boundary && !edges.contains[*h];
-        let (first, last) = (corners.first().copied(), corners.last().map(|&h| self.mesh.prev(h)));
-        let mut found: Vec<Sector> = Vec::new();
-        for corner in corners {
-            match found.last_mut() {
-                Some(sector) if !edges.contains[corner] => sector.corners.push(corner),
-                _ => found.push(Sector { corners: vec![corner], is_free: false }),
-            }
-        }
-        if let Some(sector) = found.first_mut() {
-            sector.is_free |= first.as_ref().is_some_and(ends);
-        }
-        if let Some(sector) = found.last_mut() {
-            sector.is_free |= last.as_ref().is_some_and(ends);
-        }
-        found
-    }
-
-    /// The sum of the angles of the map in a sector, quarter turns.
-    fn quarters_of(&self, sector: &Sector) -> f64 {
-        let angle_at = |&corner: &usize| {
-            let right = normalised(self.image(corner));
-            let left = normalised(self.image(self.mesh.prev(corner)).map(|x| -x));
-            angle(right, left)
+        let sector = |corners: &[usize]| {
+            let (right, left) = (*corners.first()?, self.mesh.prev(*corners.last()?));
+            (edges.contains[right] && edges.contains[left]).then(|| Sector {
+                between: [self.mesh.tip(right), self.mesh.origin[left]],
+                quarters: self.angle_sum(corners),
+            })
         };
-        sector.corners.iter().map(angle_at).sum::<f64>() / FRAC_PI_2
-    }
-
-    /// The other ends of the edges on the two sides of a sector.
-    fn sides(&self, sector: &Sector) -> [u32; 2] {
-        let right = sector.corners.first().map(|&corner| self.mesh.tip(corner));
-        let left = sector.corners.last().map(|&corner| self.mesh.origin(self.mesh.prev(corner)));
-        [right, left].map(Option::unwrap_or_default)
-    }
-}
-
-/// A vector of about length one in the direction of another.
-fn normalised(vector: Point) -> Point {
-    let size = vector[0].abs().max(vector[1].abs());
-    if size > 0.0 { vector.map(|x| x / size) } else { vector }
-}
-
-fn degrees_off_axis([u, v]: Point) -> f64 {
-    let (u, v) = (u.abs(), v.abs());
-    u.min(v).atan2(u.max(v)).to_degrees()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearer_axis_counts() {
-        for (degrees, off) in
-            [(0.0, 0.0), (90.0, 0.0), (180.0, 0.0), (30.0, 30.0), (100.0, 10.0), (225.0, 45.0)]
-        {
-            let (sin, cos) = f64::to_radians(degrees).sin_cos();
-            assert!((degrees_off_axis([3.0 * cos, 3.0 * sin]) - off).abs() < 1e-13, "{degrees}");
-        }
-        assert_eq!(degrees_off_axis([0.0, -2.0]), 0.0);
+        corners.chunk_by(|_, &h| !edges.contains[h]).filter_map(sector).collect()
     }
 }

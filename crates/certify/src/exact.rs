@@ -1,81 +1,71 @@
 //! Sums of products of doubles without rounding, and the signs that follow from them.
 
-use crate::plane::{Arrow, Point, shifted};
+use crate::plane::{Arrow, Point};
 use std::cmp::Ordering;
 
 /// Exponent of two of the last bit of the smallest product of two doubles.
 const LAST_BIT: i32 = 2 * (f64::MIN_EXP - f64::MANTISSA_DIGITS as i32);
-/// Bits of a digit. Each is kept in twice as many, so that no carry is lost in 2^63 sums.
+/// Bits of a digit. Each is kept in twice as many, so that no carry is lost in 2^62 sums.
 const DIGIT: usize = u64::BITS as usize;
 /// Digits of all products of two doubles, and room for their sum.
 const DIGITS: usize = (2 * f64::MAX_EXP - LAST_BIT) as usize / DIGIT + 3;
 
 /// A sum of products of finite doubles, as a fixed-point number that holds every bit of any of them.
-pub(crate) struct ExactSum {
-    digits: [i128; DIGITS],
-}
+pub(crate) struct ExactSum([i128; DIGITS]);
 
 impl ExactSum {
     pub(crate) fn new() -> Self {
-        Self { digits: [0; DIGITS] }
+        Self([0; DIGITS])
     }
 
     /// Adds `a b`.
     pub(crate) fn add(&mut self, a: f64, b: f64) {
-        let ([a, a_exponent], [b, b_exponent]) = (parts(a), parts(b));
+        let ([a, a_place], [b, b_place]) = (parts(a), parts(b));
         let product = i128::from(a) * i128::from(b);
-        let place = (a_exponent + b_exponent - i64::from(LAST_BIT)) as usize;
+        let (size, sign, place) =
+            (product.unsigned_abs(), product.signum(), (a_place + b_place) as usize);
         let (digit, shift) = (place / DIGIT, place % DIGIT);
-        let size = product.unsigned_abs();
         for (k, half) in [size as u64, (size >> DIGIT) as u64].into_iter().enumerate() {
             let shifted = u128::from(half) << shift;
-            self.digits[digit + k] += product.signum() * i128::from(shifted as u64);
-            self.digits[digit + k + 1] += product.signum() * (shifted >> DIGIT) as i128;
+            self.0[digit + k] += sign * i128::from(shifted as u64);
+            self.0[digit + k + 1] += sign * (shifted >> DIGIT) as i128;
         }
     }
 
-    /// Its digits from the last to the first, each from 0 to 2^64, but for the sign of the first.
-    fn carried(mut self) -> [i128; DIGITS] {
+    /// Its digits other than zero and their places, from the first to the last. Each is at most half of a unit of the digit
+    /// before, of either sign, so that the first has the sign of the number.
+    fn digits(mut self) -> impl Iterator<Item = (usize, i128)> {
         for k in 1..DIGITS {
-            let carry = self.digits[k - 1] >> DIGIT;
-            self.digits[k - 1] -= carry << DIGIT;
-            self.digits[k] += carry;
+            let carry = (self.0[k - 1] + (1 << (DIGIT - 1))) >> DIGIT;
+            self.0[k - 1] -= carry << DIGIT;
+            self.0[k] += carry;
         }
-        self.digits
+        self.0.into_iter().enumerate().rev().filter(|&(_, digit)| digit != 0)
     }
 
     /// Its sign, as its order to zero.
     pub(crate) fn sign(self) -> Ordering {
-        let digits = self.carried();
-        let is_zero = digits.iter().all(|&digit| digit == 0);
-        if is_zero { Ordering::Equal } else { digits[DIGITS - 1].cmp(&0).then(Ordering::Greater) }
+        self.digits().next().map_or(Ordering::Equal, |(_, digit)| digit.cmp(&0))
     }
 
     /// A double next to it; itself if it is one.
     pub(crate) fn value(self) -> f64 {
-        let digits = self.carried();
-        let is_negative = digits[DIGITS - 1] < 0;
-        // All digits of the negative number, from zero up.
-        let digits =
-            if is_negative { Self { digits: digits.map(|d| -d) }.carried() } else { digits };
-        let scaled =
-            |(k, &digit): (usize, &i128)| shifted(digit as f64, (DIGIT * k) as i32 + LAST_BIT);
-        let parts = digits.iter().enumerate().rev().filter(|(_, digit)| **digit != 0).map(scaled);
-        let size = parts.fold(0.0, |size, part| size + part);
-        if is_negative { -size } else { size }
+        self.digits().fold(0.0, |sum, (k, digit)| {
+            // In two factors: one may be out of range.
+            let exponent = (DIGIT * k) as i32 + LAST_BIT;
+            let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| f64::from(k).exp2());
+            sum + digit as f64 * half * rest
+        })
     }
 }
 
-/// A double as a whole number and an exponent of two.
+/// A double as a whole number times 2 to the power of the second, counted from the last bit of the smallest double.
 fn parts(x: f64) -> [i64; 2] {
-    let bits = x.to_bits();
     let fraction_bits = f64::MANTISSA_DIGITS - 1;
-    let exponent = ((bits >> fraction_bits) & 0x7ff) as i64;
-    let fraction = (bits & ((1 << fraction_bits) - 1)) as i64;
-    let leading = i64::from(exponent > 0) << fraction_bits;
-    let size = fraction | leading;
-    let lowest = i64::from(LAST_BIT / 2);
-    [if x < 0.0 { -size } else { size }, lowest + exponent.max(1) - 1]
+    let exponent = (x.abs().to_bits() >> fraction_bits) as i64;
+    let fraction = (x.to_bits() & ((1 << fraction_bits) - 1)) as i64;
+    let size = fraction | i64::from(exponent > 0) << fraction_bits;
+    [if x < 0.0 { -size } else { size }, exponent.max(1) - 1]
 }
 
 /// On which side of an arrow another one points: left is greater.
@@ -89,9 +79,8 @@ pub(crate) fn side(of: Arrow, other: Arrow) -> Ordering {
         return if rounded > 0.0 { Ordering::Greater } else { Ordering::Less };
     }
     let mut sum = ExactSum::new();
-    for (x, y, sign) in [(b, d, 1.0), (b, c, -1.0), (a, d, -1.0), (a, c, 1.0)] {
-        sum.add(sign * x[0], y[1]);
-        sum.add(-sign * x[1], y[0]);
+    for (x, y) in [(b, d), (c, b), (d, a), (a, c)] {
+        add_cross(&mut sum, x, y);
     }
     sum.sign()
 }
@@ -102,14 +91,17 @@ const ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Above this size of the terms nothing that underflows counts.
 const SMALLEST: f64 = 1e-280;
 
+/// Adds the cross product of two points.
+fn add_cross(sum: &mut ExactSum, a: Point, b: Point) {
+    sum.add(a[0], b[1]);
+    sum.add(-a[1], b[0]);
+}
+
 /// The area of triangles of the plane, counter-clockwise positive, without rounding but of the result.
 pub(crate) fn area(triangles: impl Iterator<Item = [Point; 3]>) -> f64 {
     let mut doubled = ExactSum::new();
     for [a, b, c] in triangles {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            doubled.add(from[0], to[1]);
-            doubled.add(-from[1], to[0]);
-        }
+        [(a, b), (b, c), (c, a)].into_iter().for_each(|(x, y)| add_cross(&mut doubled, x, y));
     }
     0.5 * doubled.value()
 }
@@ -151,6 +143,17 @@ mod tests {
             assert_eq!(sum(&[[x, 1.0]]).value(), x);
             assert_eq!(sum(&[[x, 1.0], [1e9, 1e9], [-1.0, 1e18]]).value(), x);
             assert_eq!(sum(&[[x, 0.5], [0.5, x]]).value(), x);
+        }
+        // Of all bits and sizes, across every place where one digit ends.
+        for exponent in -1022..1023 {
+            for x in [1.0, 1.0f64.next_up(), 2.0f64.next_down(), 1.0 + 0.5f64.powi(26)] {
+                let x = x * f64::from(exponent).exp2();
+                assert_eq!(sum(&[[x, 1.0]]).value(), x);
+                assert_eq!(sum(&[[-1.0, x]]).value(), -x);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x]]).value(), 0.0);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_up()]]).sign(), Ordering::Less);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_down()]]).sign(), Ordering::Greater);
+            }
         }
         let mut many = ExactSum::new();
         (0..1000).for_each(|_| many.add(-1e308, 1e308));

@@ -3,12 +3,12 @@
 use crate::exact::area;
 use crate::manifold::Manifold;
 use crate::map::Map;
-use crate::plane::{Point, turned};
+use crate::plane::{Arrow, Point, largest, turned};
 use crate::tolerance::{IntegralTolerance, within};
 use crate::violation::{Violation, Violations};
 
 /// What was checked beyond the certificate of the seamless map, and what was found.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IntegerCertificate {
@@ -47,122 +47,84 @@ impl Map<'_> {
         aligned: &[[u32; 2]],
         tolerance: IntegralTolerance,
     ) -> Result<IntegerCertificate, Violations> {
-        let mut found =
-            Found { tolerance: tolerance.distance(), error: 0.0, violations: Vec::new() };
-        let (mut edges, mut exact_edges, mut largest_translation) = (0, 0, 0.0f64);
+        let mut figures = IntegerCertificate::default();
+        let mut violations = Vec::new();
+        let mut look_at = |off: f64, violation: Violation| {
+            figures.integral_error = figures.integral_error.max(off);
+            if !within(off, tolerance.distance()) {
+                violations.push(violation);
+            }
+        };
         for (h, t) in self.mesh.interior_edges() {
-            let (translation, error) = self.translation(h, t, &mut found);
-            edges += 1;
-            exact_edges += usize::from(error == 0.0);
-            largest_translation =
-                translation.iter().fold(largest_translation, |m, x| m.max(x.abs()));
-        }
-        let is_cone = |&v: &u32| self.interior_index(v).is_some_and(|index| index != 0);
-        let cones: Vec<u32> = self.mesh.vertices().filter(is_cone).collect();
-        for &vertex in &cones {
-            self.grid_point(vertex, &mut found, |uv| Violation::FractionalCone { vertex, uv });
+            let (translation, off, violation) = self.translation(h, t, tolerance);
+            figures.edges += 1;
+            figures.exact_edges += usize::from(off == 0.0);
+            figures.largest_translation = figures.largest_translation.max(largest(&[translation]));
+            look_at(off, violation);
         }
         let aligned = self.edges_between(aligned).0;
-        for &edge in &aligned.edges {
-            self.isoline(edge, &mut found);
+        figures.isoline_edges = aligned.edges.len();
+        for side in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
+            let (vertices, face) = (self.mesh.ends(side), Manifold::<3>::face(side));
+            look_at(off_isolines(self.image(side)), Violation::OffIsoline { vertices, face });
         }
-        let is_corner = |v: &u32| !is_cone(v) && self.is_turning_point(*v, &aligned);
-        let corners: Vec<u32> = self.mesh.vertices().filter(is_corner).collect();
-        for &vertex in &corners {
-            self.grid_point(vertex, &mut found, |uv| Violation::FractionalCorner { vertex, uv });
-        }
-        Violations::unless_none(found.violations)?;
-        let faces = 0..self.mesh.n_faces();
-        Ok(IntegerCertificate {
-            edges,
-            exact_edges,
-            integral_cones: cones.len(),
-            isoline_edges: aligned.edges.len(),
-            integral_corners: corners.len(),
-            integral_error: found.error,
-            largest_translation,
-            area: area(faces.map(|f| self.face_corners(f).map(|corner| self.uv(corner)))),
-        })
-    }
-
-    /// Looks at the translation across an interior edge; it and its largest distance from integers at an end of the
-    /// edge, 0 if it is exact in doubles.
-    fn translation(&self, h: usize, t: usize, found: &mut Found) -> (Point, f64) {
-        let ends = [(h, self.mesh.next(t)), (self.mesh.next(h), t)];
-        let [first, second] = ends.map(|(left, right)| {
-            let (left, right) = (turned(self.uv(left), self.quarters(h)), self.uv(right));
-            [0, 1].map(|k| exact_difference(right[k], left[k]))
-        });
-        let nearest = first.map(|[rounded, _]| rounded.round());
-        let off = |end: [[f64; 2]; 2]| {
-            let parts = end.into_iter().zip(nearest);
-            parts.map(|([rounded, rest], x)| (rounded - x).abs() + rest.abs()).fold(0.0, f64::max)
-        };
-        let error = off(first).max(off(second));
-        if !found.allows(error) {
-            let (vertices, faces) = (self.mesh.ends(h), [h, t].map(Manifold::<3>::face));
-            let is_exact = first == second && first.iter().all(|[_, rest]| *rest == 0.0);
-            let is_rounding = found.tolerance == 0.0 && error < IntegralTolerance::LARGEST;
-            found.violations.push(if is_rounding && !is_exact {
-                Violation::InexactEdge { vertices, faces }
-            } else {
-                let translation = first.map(|[rounded, _]| rounded);
-                Violation::FractionalTranslation { vertices, faces, translation }
-            });
-        }
-        (nearest, error)
-    }
-
-    /// Looks at a vertex that has to be a grid point in every face around it.
-    fn grid_point(
-        &self,
-        vertex: u32,
-        found: &mut Found,
-        violation: impl FnOnce(Point) -> Violation,
-    ) {
-        let off = |uv: &Point| from_integer(uv[0]).max(from_integer(uv[1]));
-        let places = self.mesh.fan(vertex).map(|corner| self.uv(corner));
-        let Some(worst) = places.max_by(|a, b| off(a).total_cmp(&off(b))) else { return };
-        if !found.allows(off(&worst)) {
-            found.violations.push(violation(worst));
-        }
-    }
-
-    /// Looks at an aligned edge, which on both of its sides has to lie on an isoline at an integer.
-    fn isoline(&self, edge: usize, found: &mut Found) {
-        for side in std::iter::once(edge).chain(self.mesh.twin(edge)) {
-            let [a, b] = [side, self.mesh.next(side)].map(|corner| self.uv(corner));
-            let off = |k: usize| match a[k].round() == b[k].round() {
-                true => from_integer(a[k]).max(from_integer(b[k])),
-                false => f64::INFINITY,
-            };
-            let off = off(0).min(off(1));
-            if within(off, found.tolerance) {
-                found.error = found.error.max(off);
-            } else {
-                let (vertices, face) = (self.mesh.ends(edge), Manifold::<3>::face(side));
-                found.violations.push(Violation::OffIsoline { vertices, face });
-                break;
+        for vertex in self.mesh.vertices() {
+            let is_cone = self.is_cone(vertex);
+            let is_corner = !is_cone && self.is_turning_point(vertex, &aligned);
+            figures.integral_cones += usize::from(is_cone);
+            figures.integral_corners += usize::from(is_corner);
+            let off = |uv: &Point| from_integer(uv[0]).max(from_integer(uv[1]));
+            let places = self.mesh.fan(vertex).map(|corner| self.uv(corner));
+            match places.max_by(|a, b| off(a).total_cmp(&off(b))) {
+                Some(uv) if is_cone => look_at(off(&uv), Violation::FractionalCone { vertex, uv }),
+                Some(uv) if is_corner => {
+                    look_at(off(&uv), Violation::FractionalCorner { vertex, uv });
+                }
+                _ => {}
             }
         }
+        Violations::unless_none(violations)?;
+        figures.area = area((0..self.mesh.origin.len() / 3).map(|face| self.triangle(face)));
+        Ok(figures)
+    }
+
+    /// The integers next to the translation across an interior edge, their largest distance from it at an end of the edge,
+    /// 0 if it is exact in doubles, and what is wrong if that is too far.
+    fn translation(
+        &self,
+        h: usize,
+        t: usize,
+        tolerance: IntegralTolerance,
+    ) -> (Point, f64, Violation) {
+        let [a, b, c, d] = self.images(h, t);
+        let [first, second] = [(a, c), (b, d)].map(|(left, right)| {
+            let left = turned(left, self.quarters(h));
+            [0, 1].map(|k| exact_difference(right[k], left[k]))
+        });
+        let translation = first.map(|[rounded, _]| rounded);
+        let nearest = translation.map(f64::round);
+        let parts = [first, second].into_iter().flat_map(|end| end.into_iter().zip(nearest));
+        let off = parts.map(|([rounded, rest], x)| (rounded - x).abs() + rest.abs());
+        let off = off.fold(0.0, f64::max);
+        let (vertices, faces) = (self.mesh.ends(h), [h, t].map(Manifold::<3>::face));
+        let is_exact = first == second && first.iter().all(|[_, rest]| *rest == 0.0);
+        let is_rounding = tolerance == IntegralTolerance::EXACT && off < IntegralTolerance::LARGEST;
+        let violation = match is_rounding && !is_exact {
+            true => Violation::InexactEdge { vertices, faces },
+            false => Violation::FractionalTranslation { vertices, faces, translation },
+        };
+        (nearest, off, violation)
     }
 }
 
-/// What was found of the integers of a map so far.
-struct Found {
-    /// Allowed distance from an integer.
-    tolerance: f64,
-    /// Largest distance from an integer.
-    error: f64,
-    violations: Vec<Violation>,
-}
-
-impl Found {
-    /// Whether a distance from an integer is allowed.
-    fn allows(&mut self, distance: f64) -> bool {
-        self.error = self.error.max(distance);
-        within(distance, self.tolerance)
-    }
+/// The distance of an arrow from the nearest isoline at an integer: of its farther end; infinite if its ends are next to
+/// different ones.
+fn off_isolines([a, b]: Arrow) -> f64 {
+    let off = |k: usize| match a[k].round() == b[k].round() {
+        true => from_integer(a[k]).max(from_integer(b[k])),
+        false => f64::INFINITY,
+    };
+    off(0).min(off(1))
 }
 
 /// `a - b` as the nearest double and what it lacks (Knuth's two-sum).

@@ -11,7 +11,8 @@ const NONE: usize = usize::MAX;
 /// without a face count for nothing.
 #[derive(Debug)]
 pub(crate) struct Manifold<const N: usize> {
-    origin: Vec<u32>,
+    /// The vertex at each corner.
+    pub(crate) origin: Vec<u32>,
     twin: Vec<usize>,
     /// A half-edge of each vertex: at the boundary, the first of its fan.
     first: Vec<usize>,
@@ -23,21 +24,26 @@ impl<const N: usize> Manifold<N> {
             (0..N).any(|k| face[k] as usize >= n_vertices || face[..k].contains(&face[k]))
         };
         let bad = faces.iter().zip(0..).filter(|(face, _)| is_bad(face));
-        Violations::unless_none(bad.map(|(_, face)| Violation::BadFace { face }).collect())?;
+        Violations::unless_none(bad.map(|(_, face)| Violation::BadFace { face }))?;
         let origin = faces.as_flattened().to_vec();
         let mut all = Self { twin: Vec::new(), first: vec![NONE; n_vertices], origin };
         all.twin = all.twins()?;
-        all.find_first();
         let mut faces_at = vec![0usize; n_vertices];
-        all.origin.iter().for_each(|&v| faces_at[v as usize] += 1);
+        for h in all.halfedges() {
+            let vertex = all.origin[h] as usize;
+            faces_at[vertex] += 1;
+            if all.first[vertex] == NONE || all.twin[h] == NONE {
+                all.first[vertex] = h;
+            }
+        }
         let split = (0..n_vertices as u32).filter(|&v| all.fan(v).count() != faces_at[v as usize]);
-        Violations::unless_none(split.map(|vertex| Violation::SplitVertex { vertex }).collect())?;
+        Violations::unless_none(split.map(|vertex| Violation::SplitVertex { vertex }))?;
         Ok(all)
     }
 
     /// The half-edges on the other sides.
     fn twins(&self) -> Result<Vec<usize>, Violations> {
-        let ends = |h: usize| [self.origin(h), self.tip(h)];
+        let ends = |h: usize| [self.origin[h], self.tip(h)];
         let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
         let mut edges: Vec<_> = self.halfedges().map(|h| (sorted(ends(h)), h)).collect();
         edges.sort_unstable();
@@ -45,22 +51,12 @@ impl<const N: usize> Manifold<N> {
         let mut repeated = Vec::new();
         for sides in edges.chunk_by(|a, b| a.0 == b.0) {
             match *sides {
-                [_] => {}
+                [] | [_] => {}
                 [(_, h), (_, t)] if ends(h) != ends(t) => (twin[h], twin[t]) = (t, h),
                 [(vertices, _), ..] => repeated.push(Violation::RepeatedEdge { vertices }),
-                [] => {}
             }
         }
         Violations::unless_none(repeated).map(|()| twin)
-    }
-
-    fn find_first(&mut self) {
-        for h in self.halfedges() {
-            let first = &mut self.first[self.origin[h] as usize];
-            if *first == NONE || self.twin[h] == NONE {
-                *first = h;
-            }
-        }
     }
 
     pub(crate) fn n_faces(&self) -> usize {
@@ -90,6 +86,11 @@ impl<const N: usize> Manifold<N> {
         self.halfedges().filter(|&h| self.twin[h] == NONE)
     }
 
+    /// The half-edge of an edge, and that on its other side if it has two.
+    pub(crate) fn sides(&self, h: usize) -> impl Iterator<Item = usize> + use<N> {
+        std::iter::once(h).chain(self.twin(h))
+    }
+
     /// The half-edge on the other side; none at the boundary.
     pub(crate) fn twin(&self, h: usize) -> Option<usize> {
         Some(self.twin[h]).filter(|&t| t != NONE)
@@ -103,16 +104,12 @@ impl<const N: usize> Manifold<N> {
         h - h % N + (h % N + N - 1) % N
     }
 
-    pub(crate) fn origin(&self, h: usize) -> u32 {
-        self.origin[h]
-    }
-
     pub(crate) fn tip(&self, h: usize) -> u32 {
         self.origin[self.next(h)]
     }
 
     pub(crate) fn ends(&self, h: usize) -> [u32; 2] {
-        [self.origin(h), self.tip(h)]
+        [self.origin[h], self.tip(h)]
     }
 
     pub(crate) fn face(h: usize) -> u32 {
@@ -127,20 +124,17 @@ impl<const N: usize> Manifold<N> {
         })
     }
 
-    /// Whether a vertex lies on the boundary.
-    pub(crate) fn is_boundary(&self, vertex: u32) -> bool {
+    /// Whether a vertex has faces all around it; nothing of one without a face.
+    pub(crate) fn is_interior(&self, vertex: u32) -> Option<bool> {
         let first = self.first[vertex as usize];
-        first != NONE && self.twin[first] == NONE
+        (first != NONE).then(|| self.twin[first] != NONE)
     }
 
     /// The smaller half-edge of the edge between two vertices.
     pub(crate) fn edge_between(&self, a: u32, b: u32) -> Option<usize> {
-        let is_vertex = |v: u32| (v as usize) < self.first.len();
-        let towards = |from: u32, to: u32| {
-            let fan = is_vertex(from).then(|| self.fan(from)).into_iter().flatten();
-            fan.filter(move |&h| self.tip(h) == to).min()
-        };
-        towards(a, b).into_iter().chain(towards(b, a)).min()
+        let is_there = [a, b].iter().all(|&v| (v as usize) < self.first.len());
+        let towards = |from, to| self.fan(from).filter(move |&h| self.tip(h) == to);
+        is_there.then(|| towards(a, b).chain(towards(b, a)).min()).flatten()
     }
 
     /// The connected components in order of their first faces: the one of each face, and the Euler characteristic of
@@ -148,18 +142,16 @@ impl<const N: usize> Manifold<N> {
     pub(crate) fn components(&self) -> (Vec<usize>, Vec<i64>) {
         let mut component = vec![NONE; self.n_faces()];
         let mut characteristic = Vec::new();
-        let mut stack = Vec::new();
         for start in 0..self.n_faces() {
             if component[start] != NONE {
                 continue;
             }
-            stack.push(start);
+            let mut stack = vec![start];
             while let Some(face) = stack.pop() {
                 if component[face] == NONE {
                     component[face] = characteristic.len();
-                    stack.extend(
-                        (N * face..N * (face + 1)).filter_map(|h| self.twin(h)).map(|t| t / N),
-                    );
+                    let sides = N * face..N * (face + 1);
+                    stack.extend(sides.filter_map(|h| self.twin(h)).map(|t| t / N));
                 }
             }
             characteristic.push(0);

@@ -2,9 +2,10 @@
 
 use crate::exact::side;
 use crate::manifold::Manifold;
-use crate::plane::{Arrow, InUnit, Point, between, difference, quadrant, turned};
+use crate::plane::{Arrow, Point, angle, difference, nearest_quarters, quadrant, scaled, turned};
 use crate::violation::{Violation, Violations};
 use std::cmp::Ordering;
+use std::f64::consts::FRAC_PI_2;
 
 /// A map of a triangle mesh, with one UV per corner, about which nothing is known yet but that its faces form an
 /// oriented manifold and its UVs are finite.
@@ -32,14 +33,13 @@ impl<'a> Map<'a> {
         }
         let is_finite = |uvs: &[Point]| uvs.as_flattened().iter().all(|x| x.is_finite());
         let strange = uvs.chunks(3).zip(0..).filter(|(uvs, _)| !is_finite(uvs));
-        Violations::unless_none(
-            strange.map(|(_, face)| Violation::NonFiniteUv { face }).collect(),
-        )?;
+        Violations::unless_none(strange.map(|(_, face)| Violation::NonFiniteUv { face }))?;
         let mesh = Manifold::new(n_vertices, faces)?;
         let mut map = Self { quarters: vec![0; uvs.len()], mesh, uvs };
-        let fits: Vec<_> =
-            map.mesh.interior_edges().map(|(h, t)| (h, t, map.nearest_quarters(h, t))).collect();
-        for (h, t, quarters) in fits {
+        let interior: Vec<_> = map.mesh.interior_edges().collect();
+        for (h, t) in interior {
+            let [a, b, c, d] = scaled(map.images(h, t)).0;
+            let quarters = nearest_quarters(difference(b, a), difference(d, c));
             (map.quarters[h], map.quarters[t]) = (quarters, -quarters);
         }
         Ok(map)
@@ -54,36 +54,45 @@ impl<'a> Map<'a> {
         self.quarters[h]
     }
 
-    pub(crate) fn face_corners(&self, face: usize) -> [usize; 3] {
-        [3 * face, 3 * face + 1, 3 * face + 2]
+    /// The corners of a face in the plane.
+    pub(crate) fn triangle(&self, face: usize) -> [Point; 3] {
+        [0, 1, 2].map(|k| self.uv(3 * face + k))
     }
 
-    /// The ends of both images of an edge, in a unit of their own: of the half-edge in its face, then in that of its
-    /// twin.
-    pub(crate) fn images(&self, h: usize, t: usize) -> InUnit<4> {
-        InUnit::new([h, self.mesh.next(h), self.mesh.next(t), t].map(|corner| self.uv(corner)))
+    /// The ends of both images of an edge: of the half-edge in its face, then in that of its twin.
+    pub(crate) fn images(&self, h: usize, t: usize) -> [Point; 4] {
+        [h, self.mesh.next(h), self.mesh.next(t), t].map(|corner| self.uv(corner))
     }
 
-    fn nearest_quarters(&self, h: usize, t: usize) -> i32 {
-        let [a, b, c, d] = self.images(h, t).points;
-        let [cos, sin] = between(difference(b, a), difference(d, c));
-        match (cos.abs() >= sin.abs(), cos >= 0.0, sin >= 0.0) {
-            (true, true, _) => 0,
-            (true, false, _) => 2,
-            (false, _, true) => 1,
-            (false, _, false) => -1,
-        }
+    /// The ends of the image of a half-edge.
+    pub(crate) fn image(&self, h: usize) -> Arrow {
+        self.arrow(h, self.mesh.next(h))
     }
 
-    /// The image of a half-edge, by the corners at its ends.
+    /// The sum of the angles of corners, quarter turns; those of a flipped triangle are negative.
+    pub(crate) fn angle_sum(&self, corners: &[usize]) -> f64 {
+        let angle_at = |&corner: &usize| {
+            let corners = [corner, self.mesh.next(corner), self.mesh.prev(corner)];
+            let [at, right, left] = scaled(corners.map(|corner| self.uv(corner))).0;
+            angle(difference(right, at), difference(left, at))
+        };
+        corners.iter().map(angle_at).sum::<f64>() / FRAC_PI_2
+    }
+
+    /// From one corner to another.
     fn arrow(&self, from: usize, to: usize) -> Arrow {
         [self.uv(from), self.uv(to)]
     }
 
     /// The orientation of a face: greater than equal if it is positive.
     pub(crate) fn orientation(&self, face: usize) -> Ordering {
-        let [a, b, c] = self.face_corners(face);
-        side(self.arrow(a, b), self.arrow(a, c))
+        let [a, b, c] = self.triangle(face);
+        side([a, b], [a, c])
+    }
+
+    /// Whether a vertex lies off the boundary and turns by another number of quarters than four.
+    pub(crate) fn is_cone(&self, vertex: u32) -> bool {
+        self.mesh.is_interior(vertex) == Some(true) && self.turning(vertex).0 != 4
     }
 
     /// By how many quadrants the edges around a vertex turn, followed from the first to the last and at an interior
@@ -107,7 +116,7 @@ impl<'a> Map<'a> {
             first.get_or_insert(sides[0]);
             last = Some(sides[1].map(|end| turned(end, -chart)));
             if let Some(twin) = self.mesh.twin(before) {
-                let seen = quadrant(self.arrow(twin, self.mesh.next(twin)));
+                let seen = quadrant(self.image(twin));
                 let moved = seen - self.quarters(before) - left;
                 quadrants += (moved + 1).rem_euclid(4) - 1;
                 chart += self.quarters(before);

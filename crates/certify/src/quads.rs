@@ -51,38 +51,31 @@ impl Quads<'_> {
                 || quad.iter().any(|v| component(v) != component(&quad[0]))
         };
         let stray = self.quads.iter().zip(0..).filter(|(quad, _)| is_stray(quad));
-        Violations::unless_none(stray.map(|(_, face)| Violation::StrayQuad { face }).collect())?;
+        Violations::unless_none(stray.map(|(_, quad)| Violation::StrayQuad { quad }))?;
 
-        let boundary_edges = counts(surface.boundary().map(|h| component_of[h / 3]));
-        let piece_edges = counts(quads.boundary().map(|h| piece_of[h / 4]));
+        let open: BTreeSet<_> = surface.boundary().map(|h| component_of[h / 3]).collect();
+        let open_pieces: BTreeSet<_> = quads.boundary().map(|h| piece_of[h / 4]).collect();
         let mut pieces_of: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for (quad, &piece) in self.quads.iter().zip(&piece_of) {
-            if let Some(&component) = component(&quad[0]) {
-                pieces_of.entry(component).or_default().insert(piece);
-            }
+            component(&quad[0]).map(|&of| pieces_of.entry(of).or_default().insert(piece));
         }
-        let mut violations = Vec::new();
-        let mut components = 0;
-        for (&component, pieces) in &pieces_of {
-            let is_open = boundary_edges.contains_key(&component);
-            if self.is_trimmed && is_open {
-                continue;
-            }
-            components += 1;
-            let sum: i64 = pieces.iter().map(|&piece| piece_characteristics[piece]).sum();
-            let has_boundary = pieces.iter().any(|piece| piece_edges.contains_key(piece));
+        pieces_of.retain(|component, _| !(self.is_trimmed && open.contains(component)));
+        let wrong = |(&component, pieces): (&usize, &BTreeSet<usize>)| {
+            let surface = characteristics[component];
+            let quads = pieces.iter().map(|&piece| piece_characteristics[piece]).sum();
+            let pieces_end = !pieces.is_disjoint(&open_pieces);
             if pieces.len() > 1 {
-                violations.push(Violation::QuadPieces { component, pieces: pieces.len() });
-            } else if sum != characteristics[component] {
-                let surface = characteristics[component];
-                violations.push(Violation::QuadTopology { component, quads: sum, surface });
-            } else if has_boundary != is_open {
-                violations.push(Violation::QuadBoundary { component });
+                Some(Violation::QuadPieces { component, pieces: pieces.len() })
+            } else if quads != surface {
+                Some(Violation::QuadTopology { component, quads, surface })
+            } else {
+                let differs = pieces_end != open.contains(&component);
+                differs.then_some(Violation::QuadBoundary { component })
             }
-        }
-        Violations::unless_none(violations)?;
+        };
+        Violations::unless_none(pieces_of.iter().filter_map(wrong))?;
         let irregular = indices(&quads).values().sum();
-        Ok(QuadCertificate { quads: self.quads.len(), components, irregular })
+        Ok(QuadCertificate { quads: self.quads.len(), components: pieces_of.len(), irregular })
     }
 
     /// Certifies that interior vertices have the indices of the cones of an integer-grid map, and that there are as many
@@ -95,25 +88,21 @@ impl Quads<'_> {
         let found = indices(&Manifold::new(self.sources.len(), self.quads)?);
         let expected = counts(cones.iter().copied());
         let all: BTreeSet<i32> = found.keys().chain(expected.keys()).copied().collect();
-        let count = |of: &BTreeMap<i32, usize>, index| of.get(&index).copied().unwrap_or_default();
         let fault = |index| {
-            let (vertices, cones) = (count(&found, index), count(&expected, index));
-            (vertices != cones).then_some(Violation::QuadIndex { index, vertices, cones })
+            let [irregular, cones] =
+                [&found, &expected].map(|all| all.get(&index).copied().unwrap_or_default());
+            (irregular != cones).then_some(Violation::QuadIndex { index, irregular, cones })
         };
-        let mut violations: Vec<_> = all.into_iter().filter_map(fault).collect();
         let quads = self.quads.len();
-        if quads as f64 != area.round() {
-            violations.push(Violation::QuadCount { quads, area });
-        }
-        Violations::unless_none(violations)
+        let count = (quads as f64 != area.round()).then_some(Violation::QuadCount { quads, area });
+        Violations::unless_none(all.into_iter().filter_map(fault).chain(count))
     }
 }
 
 /// How many interior vertices there are of each index other than 0.
 fn indices(quads: &Manifold<4>) -> BTreeMap<i32, usize> {
-    let interior = quads.vertices().filter(|&v| !quads.is_boundary(v));
-    let valences = interior.map(|v| quads.fan(v).count() as i32).filter(|&valence| valence > 0);
-    counts(valences.map(|valence| 4 - valence).filter(|&index| index != 0))
+    let interior = quads.vertices().filter(|&v| quads.is_interior(v) == Some(true));
+    counts(interior.map(|v| 4 - quads.fan(v).count() as i32).filter(|&index| index != 0))
 }
 
 fn counts<T: Ord>(items: impl Iterator<Item = T>) -> BTreeMap<T, usize> {

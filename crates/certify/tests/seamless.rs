@@ -208,7 +208,7 @@ fn an_angle_is_refused_where_all_seams_fit() {
     let at = |degrees: f64| [degrees.to_radians().cos(), degrees.to_radians().sin()];
     let corner = |k: u32| [[0.0; 2], at(63.0 * f64::from(k)), at(63.0 * f64::from(k) + 62.9)];
     let map = (mesh_of(&fan(40, 0.0, true)), (0..40).flat_map(corner).collect::<Uvs>());
-    let loose = Tolerance::new(0.01, 1e-3).unwrap();
+    let loose = Tolerance::seams(0.01).unwrap();
     let found = SeamlessMap::certify(&map.0, map.1, &loose).err().unwrap().0;
     let [Violation::ConeAngle { vertex: 0, quarters }] = found[..] else { panic!("{found:?}") };
     assert!((quarters - 40.0 * 62.9 / 90.0).abs() < 1e-12);

@@ -192,7 +192,7 @@ fn the_certificate_refuses_what_is_not_integral() {
     let soup = testkit::bumpy(&testkit::icosphere(1), 0.05, 1);
     let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
     let good = solution.map.corner_uvs().to_vec();
-    let tolerance = Tolerance::new(1e-2, 0.1).unwrap();
+    let tolerance = Tolerance::seams(1e-2).unwrap();
     let refused =
         |uvs: Vec<[f64; 2]>| IntegerGridMap::certify(&mesh, uvs, &tolerance).unwrap_err().0;
     assert!(IntegerGridMap::certify(&mesh, good.clone(), &tolerance).is_ok());
@@ -230,7 +230,7 @@ fn checked(
     uvs: Vec<[f64; 2]>,
     tolerance: IntegralTolerance,
 ) -> Result<IntegerCertificate, Vec<Violation>> {
-    let map = SeamlessMap::certify(mesh, uvs, &Tolerance::new(1e-3, 1e-2).unwrap()).unwrap();
+    let map = SeamlessMap::certify(mesh, uvs, &Tolerance::seams(1e-3).unwrap()).unwrap();
     map.integers(mesh, &[], tolerance).map_err(|violations| violations.0)
 }
 
