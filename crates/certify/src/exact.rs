@@ -169,6 +169,17 @@ mod tests {
         assert_eq!(with(0.3), Ordering::Equal);
         assert_eq!(with(0.3f64.next_up()), Ordering::Greater);
         assert_eq!(with(0.3f64.next_down()), Ordering::Less);
+        // Of any size: doubles alone would decide otherwise.
+        for scale in [-200, -100, 30, 100, 400].map(|k| f64::from(k).exp2()) {
+            let by = |arrow: Arrow| arrow.map(|p| p.map(|x| x * scale));
+            for (y, expected) in [
+                (0.3, Ordering::Equal),
+                (0.3f64.next_up(), Ordering::Greater),
+                (0.3f64.next_down(), Ordering::Less),
+            ] {
+                assert_eq!(side(by(diagonal), by([[0.0, 0.0], [0.3, y]])), expected, "{scale}");
+            }
+        }
         // Less than any difference of doubles would say.
         let flat = [[0.0, 0.0], [1.0, 0.0]];
         assert_eq!(side(flat, [[5.0, 1e-320], [6.0, 0.0]]), Ordering::Less);

@@ -136,13 +136,20 @@ mod tests {
         [degrees.to_radians().cos(), degrees.to_radians().sin()]
     }
 
-    /// What the turning around the middle of an open fan is, whose rim lies at some points.
+    /// What the turning around the middle of an open fan is, whose rim lies at some points: the same with its faces in
+    /// charts of their own.
     fn turning_to(rim: &[Point]) -> (i32, bool) {
         let n = rim.len() as u32;
         let faces: Vec<_> = (1..n).map(|k| [0, k, k + 1]).collect();
-        let uvs: Vec<Point> =
-            rim.windows(2).flat_map(|ends| [[0.0; 2], ends[0], ends[1]]).collect();
-        Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0)
+        let turning = |chart: i32| {
+            let triangles = rim.windows(2).map(|ends| [[0.0; 2], ends[0], ends[1]]).zip(0..);
+            let uvs: Vec<Point> =
+                triangles.flat_map(|(points, k)| points.map(|p| turned(p, k * chart))).collect();
+            Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0)
+        };
+        let found = turning(0);
+        assert_eq!([1, 2, 3].map(turning), [found; 3]);
+        found
     }
 
     #[test]
