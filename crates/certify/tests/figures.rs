@@ -40,6 +40,17 @@ fn figures_of_a_square_in_two_charts() {
 }
 
 #[test]
+fn only_cones_and_corners_have_to_be_grid_points() {
+    let uvs: Vec<_> = square([3.0, 0.0]).iter().map(|[u, v]| [u + 0.5, v + 0.25]).collect();
+    let map = Map::new(4, &SQUARE, &uvs).unwrap();
+    assert_eq!(map.integers(&[], IntegralTolerance::EXACT).unwrap().integral_error, 0.0);
+    let found = map.integers(&RIM[..2], IntegralTolerance::EXACT).unwrap_err().0;
+    let off = |vertices| Violation::OffIsoline { vertices, face: 0 };
+    let corner = Violation::FractionalCorner { vertex: 1, uv: [2.5, 0.25] };
+    assert_eq!(found, [off([0, 1]), off([1, 2]), corner]);
+}
+
+#[test]
 fn translations_that_are_no_integers_are_told_by_their_size() {
     let integers = |by: f64, tolerance: f64| {
         let uvs = square([by, 3.0]);
