@@ -63,7 +63,7 @@ impl Map<'_> {
     ) -> Result<Alignment, Violations> {
         let (aligned, mut violations) = self.edges_between(edges);
         let mut figures = Alignment { edges: aligned.edges.len(), ..Alignment::default() };
-        for side in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
+        for (edge, side) in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
             let [from, to] = scaled(self.image(side)).0;
             let degrees = degrees_off_axis(difference(to, from));
             figures.boundary_edges += usize::from(self.mesh.twin(side).is_none());
@@ -71,7 +71,7 @@ impl Map<'_> {
             figures.exact_sides += usize::from(from[0] == to[0] || from[1] == to[1]);
             figures.axis_error = figures.axis_error.max(degrees);
             if !within(degrees, tolerance.axis()) {
-                let (vertices, face) = (self.mesh.ends(side), Manifold::<3>::face(side));
+                let (vertices, face) = (self.mesh.ends(edge), Manifold::<3>::face(side));
                 violations.push(Violation::OffAxis { vertices, face, degrees });
             }
         }
@@ -96,7 +96,7 @@ impl Map<'_> {
         let mut violations = Vec::new();
         for &vertices in pairs {
             match self.mesh.edge_between(vertices[0], vertices[1]) {
-                Some(h) => self.mesh.sides(h).for_each(|side| contains[side] = true),
+                Some(h) => self.mesh.sides(h).for_each(|(_, side)| contains[side] = true),
                 None => violations.push(Violation::NotAnEdge { vertices }),
             }
         }

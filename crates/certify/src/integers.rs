@@ -64,8 +64,8 @@ impl Map<'_> {
         }
         let aligned = self.edges_between(aligned).0;
         figures.isoline_edges = aligned.edges.len();
-        for side in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
-            let (vertices, face) = (self.mesh.ends(side), Manifold::<3>::face(side));
+        for (edge, side) in aligned.edges.iter().flat_map(|&edge| self.mesh.sides(edge)) {
+            let (vertices, face) = (self.mesh.ends(edge), Manifold::<3>::face(side));
             look_at(off_isolines(self.image(side)), Violation::OffIsoline { vertices, face });
         }
         for vertex in self.mesh.vertices() {

@@ -86,9 +86,9 @@ impl<const N: usize> Manifold<N> {
         self.halfedges().filter(|&h| self.twin[h] == NONE)
     }
 
-    /// The half-edge of an edge, and that on its other side if it has two.
-    pub(crate) fn sides(&self, h: usize) -> impl Iterator<Item = usize> + use<N> {
-        std::iter::once(h).chain(self.twin(h))
+    /// The half-edge of an edge, and that on its other side if it has two; with the first of them.
+    pub(crate) fn sides(&self, h: usize) -> impl Iterator<Item = (usize, usize)> + use<N> {
+        std::iter::once(h).chain(self.twin(h)).map(move |side| (h, side))
     }
 
     /// The half-edge on the other side; none at the boundary.
