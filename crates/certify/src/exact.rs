@@ -179,6 +179,9 @@ mod tests {
             ] {
                 assert_eq!(side(by(diagonal), by([[0.0, 0.0], [0.3, y]])), expected, "{scale}");
             }
+            // Its rounded cross product is positive.
+            let (one, other) = ([[0.1, 0.3], [0.4, 0.8]], [[0.0, 0.0], [0.3, 0.5]]);
+            assert_eq!(side(by(one), by(other)), Ordering::Less, "{scale}");
         }
         // Less than any difference of doubles would say.
         let flat = [[0.0, 0.0], [1.0, 0.0]];
