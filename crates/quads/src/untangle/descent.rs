@@ -43,7 +43,7 @@ pub(super) fn untangled(domain: &Domain, patch: &Patch, bound: f64) -> Option<Ve
         for _ in 0..STEPS {
             let Some(decrease) = descent.step() else { break };
             let now = score(&descent.sites);
-            if now < best {
+            if now.is_better_than(&best) {
                 (best, found) = (now, Some(descent.sites.clone()));
             }
             if now.is_good() {

@@ -88,7 +88,7 @@ const SWEEPS: usize = 6;
 /// Quads that are turned against the surface, or have a corner further from a right angle than asked for, are
 /// improved together with the quads around them; all other vertices stay, and fixed ones. A patch is changed only
 /// if fewer of its quads are inverted or crossed afterwards, or as many and fewer reflex, or as many and fewer too far
-/// from a rectangle, or as many and the sum of all corners is better.
+/// from a rectangle, or as many and the sum of all corners is clearly better.
 ///
 /// Patches are improved one by one in the order of the quads: the result does not depend on the number of threads.
 ///

@@ -3,6 +3,7 @@
 use super::Site;
 use crate::badness;
 use crate::quality::Orientation;
+use std::cmp::Ordering;
 
 /// Badness of the worst corner of a quad, see [`badness`].
 pub(super) fn worst_corner(quad: [Site; 4]) -> f64 {
@@ -13,8 +14,11 @@ pub(super) fn worst_corner(quad: [Site; 4]) -> f64 {
 /// The sum over a patch is of this power of the quads' badness: the worst lead.
 const POWER: i32 = 8;
 
+/// The part by which that sum has to fall to count: less is not seen, and would be taken again and again.
+const GAIN: f64 = 0.01;
+
 /// Quads by how bad they are; what comes first matters more, and less is better.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Score {
     /// Inverted, crossed or bent.
     faulty: usize,
@@ -39,6 +43,17 @@ impl Score {
                 badness: sum.badness + worst.powi(POWER),
             }
         })
+    }
+
+    /// Whether fewer quads are faulty, or as many and fewer reflex, or as many and fewer bad, or as many and all together clearly
+    /// better.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        let numbers = |score: &Self| (score.faulty, score.reflex, score.bad);
+        match numbers(self).cmp(&numbers(other)) {
+            Ordering::Less => true,
+            Ordering::Equal => self.badness < (1.0 - GAIN) * other.badness,
+            Ordering::Greater => false,
+        }
     }
 
     /// Whether nothing is left to do.
