@@ -21,9 +21,24 @@ const EFFORT_AGAIN: usize = 5;
 /// Curves shorter than so many cells are given up before others.
 const SHORT: f64 = 1.0;
 
+/// Rounds a map, and makes something of it on the grid.
+pub(crate) trait Round<T>:
+    Fn(&SeamlessStart, &QuantizeOptions, &mut GoesOn<'_>, &mut Watcher) -> Result<T, ManifoldError>
+{
+}
+
+impl<T, R> Round<T> for R where
+    R: Fn(
+        &SeamlessStart,
+        &QuantizeOptions,
+        &mut GoesOn<'_>,
+        &mut Watcher,
+    ) -> Result<T, ManifoldError>
+{
+}
+
 /// What is made of a map on a grid, and how it is found there.
 pub(crate) struct Rounding<R, T> {
-    /// Rounds a map.
     pub(crate) round: R,
     /// The integer-grid map in what that makes.
     pub(crate) solution: fn(&T) -> &Quantization,
@@ -54,21 +69,13 @@ impl Surface {
     ///
     /// # Errors
     /// Those of [`Surface::make_seamless`], and of the rounding with the fewest features.
-    pub(crate) fn make_gridded<R, T>(
+    pub(crate) fn make_gridded<R: Round<T>, T>(
         &self,
         asked: &FeatureCurves,
         options: &IntegerMapOptions,
         watcher: &mut Watcher,
         rounding: &Rounding<R, T>,
-    ) -> Result<(SeamlessStart, T), Error>
-    where
-        R: Fn(
-            &SeamlessStart,
-            &QuantizeOptions,
-            &mut GoesOn<'_>,
-            &mut Watcher,
-        ) -> Result<T, ManifoldError>,
-    {
+    ) -> Result<(SeamlessStart, T), Error> {
         let (mesh, settings) = (self.mesh(), options.to_quantize());
         let mut given_up = self.details(&asked.edges, options);
         let mut best: Option<Gridded<T>> = None;
@@ -87,10 +94,13 @@ impl Surface {
                 rounding,
             );
             best = match (made, best) {
-                (Ok(made), Some(best)) if made.off >= best.off && crowd.is_empty() => break best,
-                (Ok(made), Some(best)) if made.off >= best.off => Some(best),
-                (Ok(made), _) if crowd.is_empty() => break made,
-                (Ok(made), _) => Some(made),
+                (Ok(made), best) => {
+                    let closest = best.filter(|best| best.off <= made.off).unwrap_or(made);
+                    if crowd.is_empty() {
+                        break closest;
+                    }
+                    Some(closest)
+                }
                 (Err(error), _) if error.kind() == ErrorKind::Cancelled => return Err(error),
                 (Err(_), Some(best)) => break best,
                 (Err(error), None) if crowd.is_empty() => return Err(error),
@@ -122,21 +132,13 @@ impl Surface {
     }
 
     /// Makes a map that follows all features asked for but those given up, and rounds it.
-    fn attempt<R, T>(
+    fn attempt<R: Round<T>, T>(
         &self,
         (asked, given_up): (&FeatureCurves, &EdgeSet),
         (options, settings, may_give_up): (&IntegerMapOptions, &QuantizeOptions, bool),
         watcher: &mut Watcher,
         rounding: &Rounding<R, T>,
-    ) -> Attempt<T>
-    where
-        R: Fn(
-            &SeamlessStart,
-            &QuantizeOptions,
-            &mut GoesOn<'_>,
-            &mut Watcher,
-        ) -> Result<T, ManifoldError>,
-    {
+    ) -> Attempt<T> {
         let mesh = self.mesh();
         let none = EdgeSet::new(mesh, []);
         let start = match self.make_seamless(asked.without(self, given_up), options, watcher) {
