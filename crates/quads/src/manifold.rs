@@ -54,7 +54,7 @@ pub type GoesOn<'a> = dyn FnMut(&QuantizationFailure) -> bool + 'a;
 ///
 /// Where a component, or the space between cones, is only a cell or two wide, a cell of the grid may have
 /// itself as a neighbour, or another one twice. An indexed quad mesh cannot represent that. The quads of a component
-/// are therefore looked at before a grid is taken. `goes_on` is asked where a brief search has found none.
+/// are therefore looked at before a grid is taken, as is whether they keep its slits open. `goes_on` is asked where a brief search has found none.
 ///
 /// # Errors
 /// [`ManifoldError`].
@@ -99,11 +99,21 @@ impl<O: FnMut(Progress) -> ControlFlow<()>> Decisions for OfManifolds<'_, O> {
         // A small piece may have no whole cell; whether the mesh has any is found in the end. So is a wish to stop.
         let made = extract(&piece.mesh, &positions, corner_uvs, self.settings, &mut self.observe);
         let Ok(extraction) = made else { return Ok(()) };
-        extraction.mesh.connectivity().map(|_| ()).map_err(|faults| {
+        let connectivity = extraction.mesh.connectivity().map_err(|faults| {
             let faces = faulty_faces(&extraction, &faults);
             let faces = faces.into_iter().map(|f| piece.faces[f as usize].0).collect();
             Refusal { reason: format!("its quads are no manifold: {faults}"), faces }
-        })
+        })?;
+        // A slit of two edges has the same ends twice, as an edge between two quads has.
+        let (quads, mesh) =
+            (connectivity.euler_characteristic(), piece.mesh.euler_characteristic());
+        match extraction.trimmed == 0 && quads != mesh {
+            true => {
+                let reason = "its quads close a slit that is one edge long".to_owned();
+                Err(Refusal { reason, ..Refusal::default() })
+            }
+            false => Ok(()),
+        }
     }
 
     fn goes_on(&mut self, failure: &QuantizationFailure) -> bool {
@@ -131,7 +141,7 @@ mod tests {
     use super::*;
     use seamstress_parametrize::Tolerance;
     use seamstress_quantize::{GridSize, QuantizationFailure, RoundingMethod};
-    use seamstress_testkit::{squares, torus};
+    use seamstress_testkit::{disk_grid, squares, torus};
 
     #[test]
     fn a_torus_has_five_quads_at_a_minimum() {
@@ -155,6 +165,44 @@ mod tests {
             // With fewer, an edge would be repeated; five points can all be joined on a torus.
             assert!(made.connectivity.n_quads() >= 5, "asked for {asked}");
             assert_eq!(made.connectivity.euler_characteristic(), 0);
+        }
+    }
+
+    #[test]
+    fn a_slit_of_one_edge_stays_open() {
+        // A square of 8 by 8 steps, cut open along two of them.
+        let mut soup = disk_grid(8, 8);
+        let middle = 39;
+        soup.positions.push(soup.positions[middle as usize]);
+        let other = soup.positions.len() as u32 - 1;
+        let is_above = |face: &&mut [u32; 3]| face.iter().any(|&v| v > 44);
+        let corners = soup.faces.iter_mut().filter(is_above).flatten();
+        corners.filter(|v| **v == middle).for_each(|v| *v = other);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        assert_eq!(mesh.euler_characteristic(), 0);
+        let uv = |&v: &u32| [0, 1].map(|k| soup.positions[v as usize][k]);
+        let uvs = soup.faces.as_flattened().iter().map(uv).collect();
+        let map = SeamlessMap::certify(&mesh, uvs, &Tolerance::default()).unwrap();
+        let boundary = mesh.halfedges().filter(|&h| mesh.twin(h).is_none());
+        let aligned = EdgeSet::new(&mesh, boundary);
+        let mut go_on = |_| ControlFlow::Continue(());
+        for asked in [16.0, 64.0] {
+            let options =
+                QuantizeOptions { size: GridSize::Quads(asked), ..QuantizeOptions::default() };
+            let made = manifold_quads(
+                &mesh,
+                &soup.positions,
+                &map,
+                &aligned,
+                &options,
+                &mut |_| true,
+                &mut go_on,
+            )
+            .unwrap();
+            // On 4 by 4 cells the slit would be as long as an edge.
+            assert_eq!(made.connectivity.euler_characteristic(), 0, "asked for {asked}");
+            let n_quads = made.connectivity.n_quads();
+            assert!((16..=64).contains(&n_quads), "{n_quads} for {asked}");
         }
     }
 
