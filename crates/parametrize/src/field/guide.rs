@@ -2,7 +2,7 @@
 
 use super::convert::{axes, dot};
 use super::cross_field::rotations;
-use super::curvature::curvature;
+use super::curvature::Bending;
 use super::face_laplacian::FaceMatrix;
 use crate::cut::isometric::turning;
 use crate::features::Sectors;
@@ -58,7 +58,7 @@ impl Guide {
         let geometry = geometry.into();
         let positions: Vec<[f64; 3]> =
             slit.vertices().map(|s| geometry.positions[sectors.vertex(s).at()]).collect();
-        let bent = curvature(slit, &positions, metric, RADIUS * cell)?;
+        let bent = Bending::new(slit, &positions, metric)?.averaged(RADIUS * cell)?;
         let bent: FaceData<Complex64> = bent.iter().map(|bent| bent.anisotropy).collect();
         let reach = cell.max(LEAST_CELL * metric.total_area().sqrt());
         let certainty = |(f, half): (Face, &Complex64)| {

@@ -21,7 +21,7 @@ mod transfer;
 
 pub use convert::{directions_in_space, frames_from_directions, matchings_from_rows};
 pub use cross_field::{CrossField, FieldError};
-pub(crate) use curvature::curvature;
+pub(crate) use curvature::Bending;
 pub use extract::{ExtractError, extract, map_frames, map_indices};
 pub(crate) use frames_of_matchings::frames_of;
 pub use frames_of_matchings::{smooth_frames, spectral_frames};

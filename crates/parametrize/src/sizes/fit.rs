@@ -22,7 +22,7 @@ pub enum SizeError {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds(pub(super) [f64; 2]);
 
-/// Halvings of an interval of factors, which make it as small as rounding.
+/// Halvings of an interval of levels, which make it as small as rounding.
 const HALVINGS: usize = 60;
 /// Bounds that leave no choice but one are met to this.
 const SLACK: f64 = 1e-9;
@@ -35,32 +35,43 @@ pub(super) fn fitted(
     goal: f64,
     Bounds([least, largest]): Bounds,
 ) -> Result<Vec<f64>, SizeError> {
-    let size = |factor: f64, wanted: f64| (factor * wanted).clamp(least, largest);
-    let sum = |factor: f64| {
-        let cells = wanted.iter().zip(area.iter()).map(|(&wanted, area)| {
-            let size = size(factor, wanted);
+    let size = |factor: f64, v: usize| (factor.exp() * wanted[v]).clamp(least, largest);
+    let smallest_wish = wanted.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest_wish = wanted.iter().copied().fold(0.0, f64::max);
+    let factors = [(least / largest_wish).ln(), (largest / smallest_wish).ln()];
+    balanced(wanted.len(), size, factors, area, goal)
+}
+
+/// The sizes of `n` vertices, growing with a level between two, with which their areas, counted in squares of sizes, have a sum.
+pub(super) fn balanced(
+    n: usize,
+    size: impl Fn(f64, usize) -> f64,
+    [mut low, mut high]: [f64; 2],
+    area: &VertexData<f64>,
+    goal: f64,
+) -> Result<Vec<f64>, SizeError> {
+    let sum = |level: f64| {
+        let cells = (0..n).zip(area.iter()).map(|(v, area)| {
+            let size = size(level, v);
             area / (size * size)
         });
         cells.sum::<f64>()
     };
-    let smallest_wish = wanted.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest_wish = wanted.iter().copied().fold(0.0, f64::max);
-    let (mut low, mut high) = ((least / largest_wish).ln(), (largest / smallest_wish).ln());
-    if sum(low.exp()) < goal * (1.0 - SLACK) {
+    if sum(low) < goal * (1.0 - SLACK) {
         return Err(SizeError::TooFew);
     }
-    if sum(high.exp()) > goal * (1.0 + SLACK) {
+    if sum(high) > goal * (1.0 + SLACK) {
         return Err(SizeError::TooMany);
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match sum(middle.exp()) > goal {
+        match sum(middle) > goal {
             true => low = middle,
             false => high = middle,
         }
     }
-    let factor = (0.5 * (low + high)).exp();
-    Ok(wanted.iter().map(|&wanted| size(factor, wanted)).collect())
+    let level = 0.5 * (low + high);
+    Ok((0..n).map(|v| size(level, v)).collect())
 }
 
 #[cfg(test)]

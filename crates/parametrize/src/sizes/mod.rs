@@ -30,7 +30,7 @@ pub struct Sizing {
 }
 
 /// Limits on sizes ask for other cells, and these for other sizes: rounds after which they agree to a percent.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 
 /// The sizes at the vertices of a surface, in proportion to those wanted as far as the limits allow. Edges that cells will
 /// follow, `features`, bend nothing.
@@ -51,19 +51,18 @@ pub fn sizes(
     let mut wanted = wanted.to_vec();
     if sizing.adaptive > 0.0 {
         let cell = sizing.cell / metric.unit;
-        let bends = chord::bends(mesh, positions, &metric, features, cell)?;
-        let by_chord = chord::sizes(&bends, &area, goal)?;
+        let by_chord = chord::sizes(mesh, positions, &metric, features, cell, goal)?;
         let factors = by_chord.iter().map(|size| size.powf(sizing.adaptive));
         wanted.iter_mut().zip(factors).for_each(|(wanted, factor)| *wanted *= factor);
     }
     let bounds = Bounds(sizing.bounds);
-    let mut sizes = fitted(&wanted, &area, goal, bounds)?;
+    let mut sizes = wanted;
     let growth = sizing.growth * metric.unit / sizing.cell;
     for _ in 0..ROUNDS {
-        let limited = closing(mesh, &metric, growing(mesh, &metric, sizes, growth));
-        sizes = fitted(&limited, &area, goal, bounds)?;
+        let fits = fitted(&sizes, &area, goal, bounds)?;
+        sizes = closing(mesh, &metric, growing(mesh, &metric, fits, growth));
     }
-    // The area between the vertices, too.
+    // As many cells as asked for, those between the vertices, too, by a factor with which triangles still close.
     let rest = metric.scaled(mesh, &sizes).side() / sizing.side;
     sizes.iter_mut().for_each(|size| *size *= rest);
     Ok(sizes)
