@@ -1,4 +1,4 @@
-//! How far quads are from the directions of principal curvature, beside those of Instant Meshes.
+//! How far quads are from the directions of principal curvature, beside those of other programs.
 
 use crate::map_files::write_mesh;
 use crate::markdown::Table;
@@ -15,12 +15,14 @@ use std::process::Command;
 
 /// Direction: do quads follow the principal directions?
 ///
-/// A script that shares no code with the program judges the quads of each mesh, with default options, and those of Instant Meshes where the
-/// Python package `pynanoinstantmeshes` is installed. Columns, each `here; there`: quads; the mean angle between their edges and
+/// A script that shares no code with the program judges the quads of each mesh, with default options, and those of Instant Meshes
+/// and QuadriFlow where the Python packages `pynanoinstantmeshes` and `pyQuadriFlow` are installed. Columns, each `here; Instant
+/// Meshes; QuadriFlow`: quads; the mean angle between their edges and
 /// the principal directions, degrees (22.5 is random); irregular vertices; pairs of them that are adjacent, of valence 3 and 5;
 /// area of the quads by that of the source; smallest angle of corners, 1 %. Then of those here tau, mean symmetric Dirichlet energy
-/// and CPU seconds; in brackets without directions (`--align 0`). Passes if the angle is no larger than there and irregular
-/// vertices are at most half as many, on all meshes, and the angle is at most 10 degrees in the median.
+/// and CPU seconds; in brackets without directions (`--align 0`). Passes if the angle is no larger than that of Instant Meshes and
+/// irregular vertices are at most half as many, and fewer than those of QuadriFlow where its angle is no larger, on all meshes, and
+/// the angle is at most 10 degrees in the median.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -53,29 +55,50 @@ const TITLES: [&str; 10] = [
 
 /// The largest angle in the median over the meshes, degrees.
 const MEDIAN: f64 = 10.0;
-/// Instant Meshes as a Python script.
-const PEER: &str = include_str!("instant_meshes.py");
+
+/// Another program, through its Python package.
+struct Peer {
+    name: &'static str,
+    /// As imported, and a script that uses it.
+    package: &'static str,
+    script: &'static str,
+}
+
+const PEERS: [Peer; 2] = [
+    Peer {
+        name: "Instant Meshes",
+        package: "pynanoinstantmeshes",
+        script: include_str!("instant_meshes.py"),
+    },
+    Peer { name: "QuadriFlow", package: "pyQuadriFlow", script: include_str!("quadriflow.py") },
+];
+
+impl Peer {
+    fn is_installed(&self) -> bool {
+        let import = format!("import {}", self.package);
+        let output = Command::new("python3").args(["-c", &import]).output();
+        output.is_ok_and(|output| output.status.success())
+    }
+}
 
 /// Makes and judges the quads of every mesh at every count.
 pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let bench = Bench {
         program: Program { path: sibling("seamstress")?, time_limit: None, threads: Some(1) },
-        script: folder.path().join("instant_meshes.py"),
+        script: folder.path().join("peer.py"),
         source: folder.path().join("source.obj"),
         quads: folder.path().join("quads.obj"),
         judge: args.judge.clone(),
     };
-    fs::write(&bench.script, PEER)?;
-    let has_peer = Command::new("python3").args(["-c", "import pynanoinstantmeshes"]).output();
-    let has_peer = has_peer.is_ok_and(|output| output.status.success());
+    let peers = PEERS.each_ref().map(|peer| Some(peer).filter(|peer| peer.is_installed()));
     let mut text = String::new();
     let (mut failures, mut missed) = (Vec::new(), Vec::new());
     for &asked in &args.quads {
         let mut table = Table::new(TITLES);
         let mut angles = Vec::new();
         let failed = args.selection.survey(|subject| {
-            let row = bench.row(subject, asked, has_peer)?;
+            let row = bench.row(subject, asked, peers)?;
             table.report(row.cells(&subject.name));
             let named = |fault| format!("{}, {asked} quads: {fault}", subject.name);
             missed.extend(row.faults().map(named));
@@ -91,8 +114,8 @@ pub(super) fn measure(args: &Args) -> Result<Section, Box<dyn Error>> {
             }
         }
     }
-    if !has_peer {
-        progress("without Instant Meshes: no Python package `pynanoinstantmeshes`");
+    for peer in PEERS.iter().zip(peers).filter(|(_, found)| found.is_none()).map(|(peer, _)| peer) {
+        progress(&format!("without {}: no Python package `{}`", peer.name, peer.package));
     }
     Ok(Section::new(text.trim_start(), &[failures, missed].concat()))
 }
@@ -108,26 +131,26 @@ struct Bench {
 
 /// Quads of one mesh at one count.
 struct Row {
-    /// What the script says of those here, and of those of Instant Meshes.
+    /// What the script says of those here, and of those of [`PEERS`].
     here: Report,
-    there: Option<Report>,
+    there: [Option<Report>; 2],
     /// How they were made, with directions and without.
     made: Report,
     plain: Report,
 }
 
 impl Bench {
-    fn row(&self, subject: &Subject, asked: f64, has_peer: bool) -> Result<Row, Box<dyn Error>> {
+    fn row(
+        &self,
+        subject: &Subject,
+        asked: f64,
+        [instant_meshes, quadriflow]: [Option<&Peer>; 2],
+    ) -> Result<Row, Box<dyn Error>> {
         let plain = self.make(&subject.path, asked, &["--align", "0"])?;
         let made = self.make(&subject.path, asked, &[])?;
         let here = self.judged(&subject.path, asked)?;
-        let there = match has_peer {
-            true => {
-                write_mesh(&self.source, &subject.mesh)?;
-                self.peer(asked).map(|()| self.judged(&self.source, asked)).transpose()?
-            }
-            false => None,
-        };
+        write_mesh(&self.source, &subject.mesh)?;
+        let there = [self.peer(instant_meshes, asked)?, self.peer(quadriflow, asked)?];
         Ok(Row { here, there, made, plain })
     }
 
@@ -141,11 +164,16 @@ impl Bench {
         }
     }
 
-    /// Quads by Instant Meshes, if there are any.
-    fn peer(&self, asked: f64) -> Option<()> {
+    /// What the script says of quads by another program, if there are any.
+    fn peer(&self, peer: Option<&Peer>, asked: f64) -> Result<Option<Report>, Box<dyn Error>> {
+        let Some(peer) = peer else { return Ok(None) };
+        fs::write(&self.script, peer.script)?;
         let mut command = Command::new("python3");
         command.args([&self.script, &self.source, &self.quads]).arg(asked.to_string());
-        command.output().ok().filter(|output| output.status.success()).map(drop)
+        match command.output()?.status.success() {
+            true => self.judged(&self.source, asked).map(Some),
+            false => Ok(None),
+        }
     }
 
     fn judged(&self, source: &Path, asked: f64) -> Result<Report, Box<dyn Error>> {
@@ -154,14 +182,16 @@ impl Bench {
 }
 
 impl Row {
-    fn both(&self, pointer: &str) -> [Option<f64>; 2] {
+    /// A number here, of Instant Meshes and of QuadriFlow.
+    fn all(&self, pointer: &str) -> [Option<f64>; 3] {
         let of = |report: &Report| report.number(pointer);
-        [of(&self.here), self.there.as_ref().and_then(of)]
+        let [instant_meshes, quadriflow] = self.there.each_ref().map(|r| r.as_ref().and_then(of));
+        [of(&self.here), instant_meshes, quadriflow]
     }
 
     fn cells(&self, name: &str) -> Vec<String> {
         let pair = |key: &str, digits: usize| {
-            let shown = self.both(key).map(|x| x.map_or("-".into(), |x| format!("{x:.digits$}")));
+            let shown = self.all(key).map(|x| x.map_or("-".into(), |x| format!("{x:.digits$}")));
             shown.join("; ")
         };
         let against = |pointer: &str, digits: usize| {
@@ -184,15 +214,27 @@ impl Row {
 
     /// What is not as it should be.
     fn faults(&self) -> impl Iterator<Item = String> {
-        let above = |pointer: &str, part: f64| match self.both(pointer) {
-            [Some(here), Some(there)] if here > part * there => Some((here, there)),
-            _ => None,
-        };
-        let angle = above("/direction", 1.0)
-            .map(|(here, there)| format!("{here:.1} degrees, there {there:.1}"));
-        let irregular = above("/irregular", 0.5)
-            .map(|(here, there)| format!("{here} irregular vertices, there {there}"));
-        angle.into_iter().chain(irregular)
+        let [angles, irregular] = ["/direction", "/irregular"].map(|pointer| self.all(pointer));
+        let mut faults = Vec::new();
+        if let [Some(here), Some(there), _] = angles
+            && here > there
+        {
+            faults.push(format!("{here:.1} degrees, there {there:.1}"));
+        }
+        if let [Some(here), Some(there), _] = irregular
+            && here > 0.5 * there
+        {
+            faults.push(format!("{here} irregular vertices, there {there}"));
+        }
+        if let ([Some(angle), _, Some(other)], [Some(here), _, Some(there)]) = (angles, irregular)
+            && other <= angle
+            && here >= there
+        {
+            let text =
+                format!("{here} irregular vertices, of QuadriFlow {there} at {other:.1} degrees");
+            faults.push(text);
+        }
+        faults.into_iter()
     }
 }
 
@@ -201,28 +243,33 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    fn row(here: Value, there: Option<Value>) -> Row {
+    fn row(here: Value, there: [Option<Value>; 2]) -> Row {
         let made = json!({"distortion": {"tau": 2.0, "symmetric_dirichlet": 4.1}});
         let [made, plain] = [made.clone(), made].map(Report::from);
-        Row { here: here.into(), there: there.map(Report::from), made, plain }
+        Row { here: here.into(), there: there.map(|there| there.map(Report::from)), made, plain }
     }
 
     #[test]
     fn a_row_fails_where_the_other_program_is_better() {
-        let there = || Some(json!({"direction": 9.0, "irregular": 100}));
+        let there = || [Some(json!({"direction": 9.0, "irregular": 100})), None];
         let faults = |here, there| row(here, there).faults().collect::<Vec<_>>();
         assert!(faults(json!({"direction": 9.0, "irregular": 50}), there()).is_empty());
-        assert!(faults(json!({"direction": 30.0, "irregular": 500}), None).is_empty());
+        assert!(faults(json!({"direction": 30.0, "irregular": 500}), [None, None]).is_empty());
         assert_eq!(
             faults(json!({"direction": 9.1, "irregular": 51}), there()),
             ["9.1 degrees, there 9.0", "51 irregular vertices, there 100"]
         );
+        let quadriflow = |angle: f64| [None, Some(json!({"direction": angle, "irregular": 50}))];
+        let here = || json!({"direction": 9.0, "irregular": 50});
+        assert!(faults(here(), quadriflow(9.1)).is_empty());
+        let fault = "50 irregular vertices, of QuadriFlow 50 at 9.0 degrees";
+        assert_eq!(faults(here(), quadriflow(9.0)), [fault]);
     }
 
     #[test]
     fn a_row_has_a_cell_for_every_title() {
-        let cells = row(json!({"direction": 9.04}), None).cells("m");
+        let cells = row(json!({"direction": 9.04}), [None, None]).cells("m");
         assert_eq!(cells.len(), TITLES.len());
-        assert_eq!((cells[2].as_str(), cells[8].as_str()), ("9.0; -", "4.100 (4.100)"));
+        assert_eq!((cells[2].as_str(), cells[8].as_str()), ("9.0; -; -", "4.100 (4.100)"));
     }
 }
