@@ -19,8 +19,9 @@ mod tree;
 
 use crate::pattern::Pattern;
 use numeric::Factor;
+use pieces::Pieces;
 pub use quad::Scalar;
-use solve::Workspace;
+use solve::{Factored, Workspace};
 use symbolic::Symbolic;
 
 /// No id.
@@ -34,6 +35,7 @@ pub struct NotPositiveDefinite;
 /// Analysis, factor and workspace for one pattern.
 pub struct Cholesky<T: Scalar> {
     symbolic: Symbolic,
+    pieces: Pieces,
     factor: Factor<T>,
     /// Of solves with one right-hand side.
     workspace: Workspace<T, 1>,
@@ -56,8 +58,9 @@ impl<T: Scalar> Cholesky<T> {
             return Err(NotPositiveDefinite);
         }
         let symbolic = Symbolic::new(pattern, order, T::REALS);
-        let (factor, workspace) = (Factor::new(&symbolic), Workspace::new(&symbolic));
-        Ok(Self { symbolic, factor, workspace })
+        let pieces = Pieces::new(&symbolic);
+        let (factor, workspace) = (Factor::new(&symbolic), Workspace::new(&pieces));
+        Ok(Self { symbolic, pieces, factor, workspace })
     }
 
     /// Number of entries of the factor, with those that only fill up blocks.
@@ -75,27 +78,27 @@ impl<T: Scalar> Cholesky<T> {
 
     /// Overwrites the right-hand side with the solution.
     pub fn solve(&mut self, rhs: &mut [T]) {
-        self.workspace.solve::<4>(&self.symbolic, &self.factor, rhs);
+        let Self { symbolic, pieces, factor, workspace } = self;
+        workspace.solve::<4>(Factored { symbolic, pieces, factor }, rhs);
     }
 
     /// Solves for several right-hand sides at once, column after column in `rhs`; one pass over the factor serves up
     /// to four. Needs no exclusive access, so threads can share the factor. Each solution has the same bits as that
     /// of [`Cholesky::solve`].
     pub fn solve_columns(&self, rhs: &mut [T], columns: usize) {
-        let n = self.symbolic.order.len();
+        let Self { symbolic, pieces, factor, .. } = self;
+        let (n, system) = (symbolic.order.len(), Factored { symbolic, pieces, factor });
         let (fours, rest) = rhs[..n * columns].split_at_mut(columns / 4 * 4 * n);
         let (twos, ones) = rest.split_at_mut(columns % 4 / 2 * 2 * n);
         if !fours.is_empty() {
-            let mut workspace = Workspace::<T, 4>::new(&self.symbolic);
-            fours
-                .chunks_exact_mut(4 * n)
-                .for_each(|rhs| workspace.solve::<2>(&self.symbolic, &self.factor, rhs));
+            let mut workspace = Workspace::<T, 4>::new(pieces);
+            fours.chunks_exact_mut(4 * n).for_each(|rhs| workspace.solve::<2>(system, rhs));
         }
         if !twos.is_empty() {
-            Workspace::<T, 2>::new(&self.symbolic).solve::<4>(&self.symbolic, &self.factor, twos);
+            Workspace::<T, 2>::new(pieces).solve::<4>(system, twos);
         }
         if !ones.is_empty() {
-            Workspace::<T, 1>::new(&self.symbolic).solve::<4>(&self.symbolic, &self.factor, ones);
+            Workspace::<T, 1>::new(pieces).solve::<4>(system, ones);
         }
     }
 }

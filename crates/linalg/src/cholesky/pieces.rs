@@ -10,7 +10,6 @@ use super::symbolic::Symbolic;
 use std::ops::Range;
 
 /// The numbers of unknowns within pieces.
-#[derive(Default)]
 pub(super) struct Pieces {
     pub(super) subtrees: Vec<Piece<Range<usize>>>,
     pub(super) top: Piece<Vec<usize>>,
@@ -21,7 +20,6 @@ pub(super) struct Pieces {
 }
 
 /// A group of subtrees, or the top of the tree.
-#[derive(Default)]
 pub(super) struct Piece<F> {
     pub(super) fronts: F,
     /// The unknown that each pivot stands for.
@@ -40,15 +38,14 @@ impl<F> Piece<F> {
 }
 
 impl Pieces {
-    /// Of fronts with these parents.
-    pub(super) fn new(symbolic: &Symbolic, parent: &[u32]) -> Self {
+    pub(super) fn new(symbolic: &Symbolic) -> Self {
         // Solves take as long as it takes to read the factor. The top is solved by one thread: it has to be small.
         const PARTS: f64 = 8.0;
         // Quads that are read in 20 microseconds.
         const LEAST: f64 = 8192.0;
-        let m = symbolic.len();
+        let (m, parent) = (symbolic.len(), symbolic.parents());
         let size = (0..m).map(|s| symbolic.panels(s..s + 1).len() as f64).collect();
-        let Forest { subtrees, top } = Forest::new(parent, size, PARTS, LEAST);
+        let Forest { subtrees, top } = Forest::new(&parent, size, PARTS, LEAST);
         let mut numbers = Numbers {
             symbolic,
             of_row: vec![0; symbolic.order.len()],

@@ -7,6 +7,14 @@ use super::quad::{Quad, Scalar};
 use super::symbolic::{Front, Symbolic};
 use seamstress_parallel::prelude::*;
 
+/// A matrix that has been factored.
+#[derive(Clone, Copy)]
+pub(super) struct Factored<'a, T: Scalar> {
+    pub(super) symbolic: &'a Symbolic,
+    pub(super) pieces: &'a Pieces,
+    pub(super) factor: &'a Factor<T>,
+}
+
 /// Memory of a solve with `N` right-hand sides.
 pub(super) struct Workspace<T: Scalar, const N: usize> {
     /// The vectors of the pieces, one after the other.
@@ -16,8 +24,7 @@ pub(super) struct Workspace<T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Workspace<T, N> {
-    pub(super) fn new(symbolic: &Symbolic) -> Self {
-        let Pieces { subtrees, top, .. } = &symbolic.pieces;
+    pub(super) fn new(Pieces { subtrees, top, .. }: &Pieces) -> Self {
         let length = subtrees.iter().map(Piece::len).sum::<usize>() + top.len();
         let widest = subtrees.iter().map(|piece| piece.widest).sum::<usize>() + top.widest;
         Self { x: vec![[T::default(); N]; length], sums: vec![[T::Quad::default(); N]; widest] }
@@ -25,23 +32,18 @@ impl<T: Scalar, const N: usize> Workspace<T, N> {
 
     /// Solves for `N` columns, one after the other in `rhs`. `R` block rows of a panel are worked on together, which is
     /// a matter of speed only.
-    pub(super) fn solve<const R: usize>(
-        &mut self,
-        symbolic: &Symbolic,
-        factor: &Factor<T>,
-        rhs: &mut [T],
-    ) {
-        let Pieces { subtrees, top, .. } = &symbolic.pieces;
+    pub(super) fn solve<const R: usize>(&mut self, system: Factored<'_, T>, rhs: &mut [T]) {
+        let Pieces { subtrees, top, .. } = system.pieces;
         let (mut x, mut sums) = (&mut self.x[..], &mut self.sums[..]);
         let mut top = Part::new(top, &mut x, &mut sums);
         let parts = subtrees.iter().map(|piece| Part::new(piece, &mut x, &mut sums));
         let mut parts: Vec<_> = parts.collect();
-        let n = symbolic.order.len();
+        let n = system.symbolic.order.len();
 
         parts.par_iter_mut().for_each(|part| {
             part.load(rhs, n);
             let fronts = part.piece.fronts.clone();
-            dispatch(Forwards::<T, _, R, N> { symbolic, factor, fronts, x: part.x });
+            dispatch(Forwards::<T, _, R, N> { system, fronts, x: part.x });
         });
         top.load(rhs, n);
         for part in &mut parts {
@@ -51,16 +53,16 @@ impl<T: Scalar, const N: usize> Workspace<T, N> {
             }
         }
         let fronts = || top.piece.fronts.iter().copied();
-        dispatch(Forwards::<T, _, R, N> { symbolic, factor, fronts: fronts(), x: top.x });
+        dispatch(Forwards::<T, _, R, N> { system, fronts: fronts(), x: top.x });
         let (fronts, sums) = (fronts(), &mut *top.sums);
-        dispatch(Backwards::<T, _, R, N> { symbolic, factor, fronts, x: top.x, sums });
+        dispatch(Backwards::<T, _, R, N> { system, fronts, x: top.x, sums });
         parts.par_iter_mut().for_each(|part| {
             for (&k, x) in part.piece.rim.iter().zip(part.rim()) {
                 *x = top.x[k as usize];
             }
             let Part { piece, x, sums } = part;
             let fronts = piece.fronts.clone();
-            dispatch(Backwards::<T, _, R, N> { symbolic, factor, fronts, x, sums });
+            dispatch(Backwards::<T, _, R, N> { system, fronts, x, sums });
         });
 
         top.store(rhs, n);
@@ -107,8 +109,7 @@ impl<'a, T: Scalar, F, const N: usize> Part<'a, T, F, N> {
 
 /// Solves `L y = b` in place for fronts of one piece.
 struct Forwards<'a, T: Scalar, F, const R: usize, const N: usize> {
-    symbolic: &'a Symbolic,
-    factor: &'a Factor<T>,
+    system: Factored<'a, T>,
     fronts: F,
     x: &'a mut [[T; N]],
 }
@@ -120,17 +121,16 @@ impl<T: Scalar, F: Iterator<Item = usize>, const R: usize, const N: usize> Kerne
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let Self { symbolic, factor, fronts, x } = self;
+        let Self { system, fronts, x } = self;
         for s in fronts {
-            Panel::<T::Quad>::new(symbolic, factor, s).solve_forwards::<FMA, R, N>(x);
+            Panel::<T::Quad>::new(system, s).solve_forwards::<FMA, R, N>(x);
         }
     }
 }
 
 /// Solves `L^H x = y` in place for fronts of one piece.
 struct Backwards<'a, T: Scalar, F, const R: usize, const N: usize> {
-    symbolic: &'a Symbolic,
-    factor: &'a Factor<T>,
+    system: Factored<'a, T>,
     fronts: F,
     x: &'a mut [[T; N]],
     sums: &'a mut [[T::Quad; N]],
@@ -143,9 +143,9 @@ impl<T: Scalar, F: DoubleEndedIterator<Item = usize>, const R: usize, const N: u
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let Self { symbolic, factor, fronts, x, sums } = self;
+        let Self { system, fronts, x, sums } = self;
         for s in fronts.rev() {
-            Panel::<T::Quad>::new(symbolic, factor, s).solve_backwards::<FMA, R, N>(x, sums);
+            Panel::<T::Quad>::new(system, s).solve_backwards::<FMA, R, N>(x, sums);
         }
     }
 }
@@ -162,13 +162,14 @@ struct Panel<'a, Q> {
 
 impl<'a, Q: Quad> Panel<'a, Q> {
     #[inline(always)]
-    fn new(symbolic: &'a Symbolic, factor: &'a Factor<Q::Scalar>, s: usize) -> Self {
+    fn new(system: Factored<'a, Q::Scalar>, s: usize) -> Self {
+        let Factored { symbolic, pieces, factor } = system;
         let front = symbolic.front(s);
         let inverse = &factor.inverse[front.first..][..front.columns];
         Self {
             front,
-            first: symbolic.pieces.first[s] as usize,
-            others: &symbolic.pieces.rows[symbolic.row_range(s..s + 1)],
+            first: pieces.first[s] as usize,
+            others: &pieces.rows[symbolic.row_range(s..s + 1)],
             rows: &factor.panels[symbolic.panels(s..s + 1)],
             inverse,
         }

@@ -9,7 +9,6 @@
 use super::NONE;
 use super::forest::Forest;
 use super::fronts::{Fronts, Groups, Size};
-use super::pieces::Pieces;
 use crate::buckets::Buckets;
 use crate::pattern::Pattern;
 use std::ops::Range;
@@ -45,8 +44,6 @@ pub(super) struct Symbolic {
     pub(super) top_stacks: [usize; 2],
     /// Length of what the subtrees hand to the top.
     pub(super) handed: usize,
-    /// Unknowns as solves number them.
-    pub(super) pieces: Pieces,
 }
 
 /// Neighbouring subtrees that are worked off together.
@@ -187,12 +184,10 @@ impl Symbolic {
             subtree_stacks: [0; 2],
             top_stacks: [0; 2],
             handed: 0,
-            pieces: Pieces::default(),
         };
 
         symbolic.place_entries(pattern);
         symbolic.plan(&fronts.parent);
-        symbolic.pieces = Pieces::new(&symbolic, &fronts.parent);
         symbolic
     }
 
@@ -230,6 +225,15 @@ impl Symbolic {
     /// Pivots of some fronts in a row.
     pub(super) fn pivots(&self, fronts: Range<usize>) -> Range<usize> {
         self.pivots[fronts.start] as usize..self.pivots[fronts.end] as usize
+    }
+
+    /// The parent of each front, or [`NONE`].
+    pub(super) fn parents(&self) -> Vec<u32> {
+        let mut parents = vec![NONE; self.len()];
+        for s in 0..self.len() {
+            self.children.of(s).iter().for_each(|&child| parents[child as usize] = s as u32);
+        }
+        parents
     }
 
     /// Where rows of some fronts in a row lie among those of all.
