@@ -83,6 +83,7 @@ mod mesh_format;
 mod mirrored;
 mod named;
 mod no_map;
+mod no_quads;
 mod optimize;
 mod options;
 mod packing;

@@ -4,10 +4,9 @@ use crate::context::Watcher;
 use crate::error::{Error, ErrorKind, Stage};
 use crate::feature_sources::Features;
 use crate::features::FeatureReport;
-use crate::finding::Elements;
 use crate::grid_size::GridSize;
 use crate::gridded::Rounding;
-use crate::integer::{FEWER_CONES, GridReport};
+use crate::integer::GridReport;
 use crate::options::{IntegerMapOptions, QuadOptions, ShapeOptions};
 use crate::parts::Selection;
 use crate::quad_report::{ExtractedMap, QuadMeshReport, QuadReport, Untangled};
@@ -29,8 +28,7 @@ use seamstress_quads::extract::SurfacePoint;
 use seamstress_quads::quality::Orientation;
 use seamstress_quads::{
     self as quads, ExtractError, ExtractOptions, Extraction, GoesOn, IrregularVertex,
-    ManifoldError, ManifoldQuads, QuadConnectivity, SmoothError, SmoothOptions, UntangleOptions,
-    manifold_quads,
+    ManifoldQuads, QuadConnectivity, SmoothError, SmoothOptions, UntangleOptions, manifold_quads,
 };
 use seamstress_quantize::{IntegerGridMap, Quantization};
 use serde::Serialize;
@@ -455,74 +453,5 @@ impl Surface {
                 format!("quads were made, but they are not those of the surface: {violations}");
             Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
         })
-    }
-
-    /// Why there are no quads that are a manifold.
-    pub(crate) fn no_manifold(&self, cause: ManifoldError, options: &IntegerMapOptions) -> Error {
-        match cause {
-            ManifoldError::Quantize(cause) => self.no_integer_map(cause, options.rounding),
-            ManifoldError::Extract(ExtractError::Cancelled(_)) => Error::cancelled(),
-            ManifoldError::NoManifold { faults, faces } => Error::no_manifold(&faults)
-                .with_elements(self.in_input(&Elements { faces, ..Elements::default() }))
-                .with_hint(FEWER_CONES),
-            other => {
-                let error =
-                    Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {other}"));
-                error.with_hint(match self.report().coincident_vertices {
-                    0 => "try more quads",
-                    _ => "vertices in one place are not joined: `weld` joins them",
-                })
-            }
-        }
-    }
-
-    /// Why a map has no quads, with the elements it names.
-    fn no_quads(&self, cause: &ExtractError, corner_uvs: &[[f64; 2]], tolerance: f64) -> Error {
-        let error = |text: String| {
-            Error::new(ErrorKind::NoQuads, format!("no quads were extracted: {text}"))
-        };
-        match cause {
-            ExtractError::Cancelled(_) => Error::cancelled(),
-            ExtractError::NotInteger(faults) => {
-                let lines = crate::finding::listing_of(&faults.0, LISTED).join("\n  ");
-                let text =
-                    format!("not an integer-grid map to within {tolerance} grid units:\n  {lines}");
-                let flipped = || self.distortion(corner_uvs).flipped;
-                error(text).with_hint(match faults.is_seamless() {
-                    false => "a map of few digits may need a larger `tolerance`",
-                    true if flipped() > 0 => {
-                        "the map is not seamless either, since it has flips; `parametrize` makes one without"
-                    }
-                    true => "the map is seamless, but not an integer-grid map; `integer_map` makes it one",
-                })
-            }
-            ExtractError::Folds { flipped, collapsed } => {
-                let [flipped, collapsed] = [flipped, collapsed].map(|faces| {
-                    faces.iter().map(|&face| self.face_named(face)).collect::<Vec<_>>()
-                });
-                let text = format!(
-                    "the map folds{}{}",
-                    folded("flipped", &flipped),
-                    folded("collapsed", &collapsed)
-                );
-                let faces = [flipped, collapsed].concat();
-                let elements = Elements { faces, ..Elements::default() };
-                error(text).with_elements(elements).with_hint("`best_effort` extracts what it can")
-            }
-            other => error(other.to_string()),
-        }
-    }
-}
-
-/// Elements of each kind that an error lists.
-const LISTED: usize = 5;
-
-fn folded(what: &str, faces: &[u32]) -> String {
-    let shown: Vec<String> = faces.iter().take(LISTED).map(u32::to_string).collect();
-    match faces.len() {
-        0 => String::new(),
-        1 => format!("\n  1 {what} face: {}", shown.join(", ")),
-        n if n > LISTED => format!("\n  {n} {what} faces: {} ...", shown.join(", ")),
-        n => format!("\n  {n} {what} faces: {}", shown.join(", ")),
     }
 }

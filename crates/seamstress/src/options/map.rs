@@ -1,15 +1,15 @@
-//! Options: what a user has a reason to change. One text each, for documentation, command line and JSON.
+//! Options of maps.
 
+#[cfg(feature = "clap")]
+use super::parse;
+use super::{not_negative, seconds};
 use crate::direction_sources::DirectionSource;
 use crate::error::Error;
 use crate::feature_sources::{FeatureSource, Features};
-use crate::grid_size::GridSize;
-use crate::parts::PartOptions;
 use crate::size_sources::SizeSource;
 use crate::symmetry::Symmetry;
 use seamstress_parametrize::RoundingOptions;
 use seamstress_parametrize::{self as method, Objective, PolishOptions};
-use seamstress_quantize as quantize;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
@@ -247,7 +247,7 @@ impl MapOptions {
     }
 
     /// Refuses to pack what is no map.
-    fn refuse_packing(&self) -> Result<(), Error> {
+    pub(super) fn refuse_packing(&self) -> Result<(), Error> {
         match self.pack {
             None => Ok(()),
             Some(_) => Err(Error::options("pack: only charts of seamless maps are packed")),
@@ -295,185 +295,6 @@ impl MapOptions {
     }
 }
 
-/// How whole numbers are chosen for an integer-grid map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[non_exhaustive]
-pub enum GridRounding {
-    /// The integers that raise the symmetric Dirichlet energy least while keeping cones apart
-    #[default]
-    Constrained,
-    /// One number after the other in the energy that preserves Jacobians; often fails
-    Greedy,
-}
-
-/// Options of [`Surface::integer_map`](crate::Surface::integer_map).
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
-#[non_exhaustive]
-pub struct IntegerMapOptions {
-    /// How fine the grid is to be
-    #[cfg_attr(feature = "clap", arg(skip))]
-    pub size: GridSize,
-
-    /// How the whole numbers are chosen
-    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "HOW",
-        default_value_t = GridRounding::Constrained))]
-    pub rounding: GridRounding,
-
-    /// What becomes of connected parts that fail, or are small
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub parts: PartOptions,
-
-    /// The seamless map that is made first
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub map: MapOptions,
-}
-
-impl IntegerMapOptions {
-    /// A grid of about so many cells in all.
-    pub fn count(quads: u32) -> Self {
-        Self { size: GridSize::Quads(f64::from(quads)), ..Self::default() }
-    }
-
-    /// A grid with cells of this edge length, mesh units.
-    pub fn edge_length(length: f64) -> Self {
-        Self { size: GridSize::EdgeLength(length), ..Self::default() }
-    }
-
-    /// Sets the options of the seamless map.
-    pub fn map(mut self, map: MapOptions) -> Self {
-        self.map = map;
-        self
-    }
-
-    /// Sets the features, which come to lie on lines of the grid.
-    pub fn features(mut self, features: Features) -> Self {
-        self.map.features = features;
-        self
-    }
-
-    /// Checks every option, as [`MapOptions::validate`] does.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
-    pub fn validate(&self) -> Result<(), Error> {
-        self.size.validate()?;
-        self.map.refuse_packing()?;
-        self.map.validate()
-    }
-
-    pub(crate) fn to_quantize(&self) -> quantize::QuantizeOptions {
-        let rounding = match self.rounding {
-            GridRounding::Constrained => quantize::RoundingMethod::Constrained,
-            GridRounding::Greedy => quantize::RoundingMethod::Greedy,
-        };
-        // Directions that are given count fully.
-        let alignment = match self.map.directions.is_empty() {
-            true => self.map.align.unwrap_or(0.0),
-            false => 1.0,
-        };
-        let size = self.size.to_quantize();
-        quantize::QuantizeOptions { size, rounding, alignment, ..Default::default() }
-    }
-}
-
-/// What is done to the vertices of extracted quads, and said of them.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
-#[non_exhaustive]
-pub struct ShapeOptions {
-    /// Leave every vertex where the map has it, and badly shaped quads as they are
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub raw: bool,
-
-    /// Move the vertices along the surface this many times, to even out angles and lengths
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 0,
-        value_parser = clap::value_parser!(u32).range(0..=1000)))]
-    pub smooth: u32,
-
-    /// Write the point of the input that the map has each vertex at, as properties of vertices in PLY: `source_face`,
-    /// `source_vertex_0` to `_2`, corners of that face, counted from 0, and `source_weight_0` to `_2`, their weights
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub source_points: bool,
-}
-
-/// Options of [`Surface::quad_mesh`](crate::Surface::quad_mesh).
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
-#[non_exhaustive]
-pub struct QuadOptions {
-    /// How fine the grid is to be
-    #[cfg_attr(feature = "clap", arg(skip))]
-    pub size: GridSize,
-
-    /// What is done to the vertices
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub shape: ShapeOptions,
-
-    /// What becomes of connected parts that fail, or are small
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub parts: PartOptions,
-
-    /// The seamless map that is made first
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub map: MapOptions,
-}
-
-impl QuadOptions {
-    /// About so many quads in all.
-    pub fn count(quads: u32) -> Self {
-        Self { size: GridSize::Quads(f64::from(quads)), ..Self::default() }
-    }
-
-    /// Quads of this edge length, mesh units.
-    pub fn edge_length(length: f64) -> Self {
-        Self { size: GridSize::EdgeLength(length), ..Self::default() }
-    }
-
-    /// Sets the features, which chains of edges of quads follow.
-    pub fn features(mut self, features: Features) -> Self {
-        self.map.features = features;
-        self
-    }
-
-    /// Sets the options of the seamless map.
-    pub fn map(mut self, map: MapOptions) -> Self {
-        self.map = map;
-        self
-    }
-
-    /// Whether to leave every vertex where the map has it.
-    pub fn raw(mut self, raw: bool) -> Self {
-        self.shape.raw = raw;
-        self
-    }
-
-    /// Sets how often the vertices are smoothed along the surface.
-    pub fn smooth(mut self, rounds: u32) -> Self {
-        self.shape.smooth = rounds;
-        self
-    }
-
-    /// Checks every option, as [`MapOptions::validate`] does.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Options`](crate::ErrorKind::Options), naming the option.
-    pub fn validate(&self) -> Result<(), Error> {
-        self.size.validate()?;
-        self.map.refuse_packing()?;
-        self.map.validate()
-    }
-}
-
 impl Features {
     fn validate(&self) -> Result<(), Error> {
         for source in self.sources() {
@@ -485,130 +306,5 @@ impl Features {
             }
         }
         Ok(())
-    }
-}
-
-pub(crate) fn not_negative(name: &str, value: f64) -> Result<(), Error> {
-    match value.is_finite() && value >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::options(format!("{name}: {value} is no number of 0 or larger"))),
-    }
-}
-
-/// Durations in JSON: seconds.
-pub(crate) mod seconds {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-    use std::time::Duration;
-
-    pub(crate) fn serialize<S: Serializer>(
-        time: &Option<Duration>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        time.map(|time| time.as_secs_f64()).serialize(serializer)
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Option<Duration>, D::Error> {
-        let seconds = Option::<f64>::deserialize(deserializer)?;
-        let time = |seconds: f64| {
-            let time = Some(seconds).filter(|x| *x > 0.0);
-            let time = time.and_then(|x| Duration::try_from_secs_f64(x).ok());
-            time.ok_or_else(|| {
-                serde::de::Error::custom("expected a number of seconds larger than 0")
-            })
-        };
-        seconds.map(time).transpose()
-    }
-}
-
-/// Parsers of arguments.
-#[cfg(feature = "clap")]
-pub(crate) mod parse {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    use seamstress_parametrize::Objective;
-    use std::time::Duration;
-
-    pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-        match text.parse::<f64>() {
-            Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
-            _ => Err("expected a number, 0 or larger".into()),
-        }
-    }
-
-    pub(crate) fn positive(text: &str) -> Result<f64, String> {
-        match text.parse::<f64>() {
-            Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-            _ => Err("expected a number larger than 0".into()),
-        }
-    }
-
-    pub(crate) fn share(text: &str) -> Result<f64, String> {
-        match text.parse::<f64>() {
-            Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
-            _ => Err("expected a number from 0 to 1".into()),
-        }
-    }
-
-    pub(crate) fn angle(text: &str) -> Result<f64, String> {
-        match text.parse::<f64>() {
-            Ok(x) if x > 0.0 && x <= 180.0 => Ok(x),
-            _ => Err("expected degrees, more than 0 and at most 180".into()),
-        }
-    }
-
-    pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
-        let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
-        positive
-            .and_then(|x| Duration::try_from_secs_f64(x).ok())
-            .ok_or_else(|| "expected a number of seconds larger than 0".into())
-    }
-
-    /// Names of objectives.
-    pub(crate) fn objective() -> impl TypedValueParser<Value = Objective> {
-        PossibleValuesParser::new(Objective::ALL.map(Objective::name)).map(|name| {
-            // The parser lets no other name pass.
-            let named = Objective::ALL.into_iter().find(|objective| objective.name() == name);
-            named.unwrap_or(Objective::SymmetricDirichlet)
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_survive_json() {
-        let mut options = QuadOptions::count(1500).features(Features::angle(40.0)).smooth(3);
-        options.map.polish_time = Some(Duration::from_millis(2500));
-        options.map.objective = Some(Objective::SymmetricDirichlet);
-        let text = serde_json::to_string(&options).unwrap();
-        assert_eq!(serde_json::from_str::<QuadOptions>(&text).unwrap(), options);
-        assert_eq!(serde_json::from_str::<QuadOptions>("{}").unwrap(), QuadOptions::default());
-    }
-
-    #[test]
-    fn unknown_and_impossible_options_are_named() {
-        let unknown = serde_json::from_str::<MapOptions>(r#"{"cone_bais": 1}"#).unwrap_err();
-        assert!(unknown.to_string().contains("cone_bais"), "{unknown}");
-        let cases: [(MapOptions, &str); 6] = [
-            (MapOptions { corner_angle: 0.0, ..Default::default() }, "corner_angle"),
-            (MapOptions::default().cone_bias(-1.0), "cone_bias"),
-            (MapOptions { align: Some(1.5), ..Default::default() }, "align"),
-            (MapOptions::default().cone_price(f64::NAN), "cone_price"),
-            (MapOptions::default().features(Features::angle(0.0)), "features"),
-            (
-                MapOptions { max_energy_rise: f64::INFINITY, ..Default::default() },
-                "max_energy_rise",
-            ),
-        ];
-        for (options, name) in cases {
-            let error = options.validate().unwrap_err();
-            assert_eq!(error.code(), "options");
-            assert!(error.to_string().starts_with(name), "{error}");
-        }
-        let error = QuadOptions::edge_length(0.0).validate().unwrap_err();
-        assert!(error.to_string().starts_with("edge_length"), "{error}");
     }
 }
