@@ -43,8 +43,9 @@ const NEEDLE: f64 = 0.087;
 /// Pieces of an edge that joins two feature curves, at a minimum.
 const FEWEST_PIECES: usize = 2;
 /// Edges of a part are at most as long as this multiple of the side of a square of its area, so that it gets points inside.
-/// With 1, narrow parts, as the strips around holes, got half as many triangles again, and room for cones in each of them.
-const PART: f64 = 2.0;
+/// With 1, narrow parts, as the strips around holes, got half as many triangles again, and room for cones in each of them;
+/// with 2 some have too little room for grids of few cells.
+const PART: f64 = 1.4;
 /// Pieces of an edge at most that this asks for: a needle would ask for any number.
 const MOST_PIECES: f64 = 1000.0;
 /// Points added at most, on borders and then inside, on a mesh of fewer vertices: what is long and narrow everywhere gets
