@@ -13,9 +13,9 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern in which all unknowns of a clique are coupled with each other.
-    pub fn of_cliques<'a>(order: usize, cliques: impl Iterator<Item = &'a [u32]>) -> Self {
+    pub fn of_cliques(order: usize, cliques: impl Iterator<Item = impl AsRef<[u32]>>) -> Self {
         let mut builder = PatternBuilder::new(order);
-        cliques.for_each(|clique| builder.add_clique(clique));
+        cliques.for_each(|clique| builder.add_clique(clique.as_ref()));
         builder.build()
     }
 

@@ -12,7 +12,7 @@ use crate::stretch::Stretch;
 use crate::vector::{Point, add, norm, sub};
 use crate::{QuadConnectivity, QuadMesh};
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_parallel::prelude::*;
 use seamstress_parametrize::progress::Watch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -210,9 +210,7 @@ impl Surroundings {
                 edges.extend(other.filter(|&j| j < i).map(|j| [j as u32, i as u32]));
             }
         }
-        let mut pattern = PatternBuilder::new(followers.len());
-        edges.iter().for_each(|edge| pattern.add_clique(edge));
-        let pattern = pattern.build();
+        let pattern = Pattern::of_cliques(followers.len(), edges.iter());
         let mut matrix = vec![0.0; pattern.len()];
         for (&slot, &v) in pattern.diagonal().iter().zip(&followers) {
             matrix[slot as usize] = connectivity.neighbours(v).count() as f64;

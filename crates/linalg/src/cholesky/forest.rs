@@ -45,6 +45,12 @@ impl Forest {
     }
 }
 
+/// The fronts of a group of subtrees, in a tree given by parents, whose parent is above the group.
+pub(super) fn roots(parent: &[u32], fronts: Range<usize>) -> impl Iterator<Item = usize> {
+    let end = fronts.end;
+    fronts.filter(move |&s| parent[s] != NONE && parent[s] as usize >= end)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,7 @@
 //! have in the top of the tree. What the rims gather on the way forwards goes to the top, one piece after the other;
 //! on the way back they hold what the top has found. The tree fixes the pieces, so that sums have one order.
 
-use super::NONE;
-use super::forest::Forest;
+use super::forest::{Forest, roots};
 use super::symbolic::Symbolic;
 use std::ops::Range;
 
@@ -55,8 +54,7 @@ impl Pieces {
         let top_piece = numbers.number(top.iter().copied(), Vec::new());
         let in_top = numbers.of_row.clone();
         let subtrees = subtrees.into_iter().map(|fronts| {
-            let is_root = |&s: &usize| parent[s] != NONE && !fronts.contains(&(parent[s] as usize));
-            let roots = fronts.clone().filter(is_root);
+            let roots = roots(&parent, fronts.clone());
             let mut rim: Vec<u32> = roots.flat_map(|s| symbolic.front(s).rows).copied().collect();
             rim.sort_unstable();
             rim.dedup();

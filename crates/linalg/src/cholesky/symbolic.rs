@@ -7,7 +7,7 @@
 //! rows and columns are there but mean nothing. Block row `i` of an update matrix holds columns `0 .. 4 (i + 1)` only.
 
 use super::NONE;
-use super::forest::Forest;
+use super::forest::{Forest, roots};
 use super::fronts::{Fronts, Groups, Size};
 use crate::buckets::Buckets;
 use crate::pattern::Pattern;
@@ -310,12 +310,10 @@ impl Symbolic {
         let forest = Forest::new(parent, work, PARTS, LEAST);
         for fronts in forest.subtrees {
             let before = self.handed;
-            for s in fronts.clone() {
-                if parent_of(s).is_some_and(|p| !fronts.contains(&p)) {
-                    self.homes[s].handed = true;
-                    self.homes[s].offset = self.handed;
-                    self.handed += self.front(s).update_len();
-                }
+            for s in roots(parent, fronts.clone()) {
+                self.homes[s].handed = true;
+                self.homes[s].offset = self.handed;
+                self.handed += self.front(s).update_len();
             }
             let heights = self.stack(fronts.clone());
             self.subtree_stacks = [0, 1].map(|k| self.subtree_stacks[k].max(heights[k]));

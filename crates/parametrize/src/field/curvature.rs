@@ -4,7 +4,7 @@ use super::convert::{axes, cross, dot};
 use crate::cotangent::edge_weight;
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Face, FaceData, Halfedge, Metric, TriMesh, VertexData};
 
 /// Entries of a symmetric tensor of space, by their places.
@@ -111,11 +111,11 @@ struct Diffusion<'a> {
 impl<'a> Diffusion<'a> {
     fn new(mesh: &'a TriMesh, metric: &Metric) -> Result<Self, NotPositiveDefinite> {
         let n = mesh.n_vertices();
-        let mut builder = PatternBuilder::new(n);
-        mesh.edges().for_each(|h| builder.add_clique(&[mesh.origin(h).0, mesh.tip(h).0]));
-        let pattern = builder.build();
-        let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect::<Vec<_>>();
-        let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
+        let edges: Vec<[u32; 2]> =
+            mesh.edges().map(|h| [mesh.origin(h).0, mesh.tip(h).0]).collect();
+        let pattern = Pattern::of_cliques(n, edges.iter());
+        let graph = Graph::from_edges(n, edges.iter().map(|&[a, b]| (a, b)));
+        let order = fill_reducing_order(&graph);
         let (cotangent, area) = (metric.cotangent(), metric.vertex_area(mesh));
         let weights = mesh.edges().map(|h| edge_weight(mesh, &cotangent, h)).collect();
         let cholesky = Cholesky::analyze(&pattern, &order)?;

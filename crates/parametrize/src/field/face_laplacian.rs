@@ -1,7 +1,7 @@
 //! Least squares over the angles of faces, coupled across edges.
 
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, Scalar};
 use seamstress_mesh::{Halfedge, TriMesh};
 
 /// Shift of the diagonal, against the constant that is free on every component.
@@ -22,9 +22,7 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
     pub(super) fn new(mesh: &TriMesh) -> Result<Self, NotPositiveDefinite> {
         let sides = |h: Halfedge| [h.face().0, mesh.twin(h).map_or(h, |t| t).face().0];
         let faces: Vec<[u32; 2]> = mesh.interior_edges().map(sides).collect();
-        let mut builder = PatternBuilder::new(mesh.n_faces());
-        faces.iter().for_each(|pair| builder.add_clique(pair));
-        let pattern = builder.build();
+        let pattern = Pattern::of_cliques(mesh.n_faces(), faces.iter());
         let graph = Graph::from_edges(mesh.n_faces(), faces.iter().map(|&[f, g]| (f, g)));
         let cholesky = Cholesky::analyze(&pattern, &fill_reducing_order(&graph))?;
         let values = vec![T::default(); pattern.len()];

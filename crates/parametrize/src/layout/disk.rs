@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Halfedge, Metric, TriMesh, Vertex};
 use std::f64::consts::TAU;
 
@@ -36,9 +36,7 @@ pub fn embed_disk(mesh: &TriMesh, metric: &Metric) -> Result<Vec<[f64; 2]>, Disk
     let mut z = on_circle(mesh, metric);
     let is_inner = |v: Vertex| !mesh.is_boundary(v);
     let ends = |h| [mesh.origin(h), mesh.tip(h)];
-    let mut builder = PatternBuilder::new(n);
-    mesh.edges().for_each(|h| builder.add_clique(&ends(h).map(|v| v.0)));
-    let pattern = builder.build();
+    let pattern = Pattern::of_cliques(n, mesh.edges().map(|h| ends(h).map(|v| v.0)));
     let edges: Vec<_> = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0)).collect();
     let order = fill_reducing_order(&Graph::from_edges(n, edges.into_iter()));
     let mut cholesky = Cholesky::<f64>::analyze(&pattern, &order)?;

@@ -6,7 +6,7 @@ use crate::features::Sectors;
 use crate::field::{Guide, frames_of};
 use crate::quarter::nearest_quarter;
 use num_complex::Complex64;
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Halfedge, HalfedgeData, Metric, Vertex};
 use seamstress_parallel::prelude::*;
 use std::collections::VecDeque;
@@ -68,7 +68,7 @@ impl<'a> Holonomy<'a> {
                 2.0 / sum.clamp(COTANGENT_RANGE.0, COTANGENT_RANGE.1)
             })
             .collect();
-        let pattern = dual_pattern(nodes, sides.iter().copied());
+        let pattern = Pattern::of_cliques(nodes, sides.iter());
         // Two faces are coupled across an edge: a face is where its two corners are that go first.
         let dissection = sectors.dissection();
         let corners = slit.faces().flat_map(|f| {
@@ -271,10 +271,4 @@ impl<'a> Projector<'a> {
         turn.iter_mut().for_each(|x| *x -= ground);
         turn
     }
-}
-
-fn dual_pattern(n_faces: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Pattern {
-    let mut builder = PatternBuilder::new(n_faces);
-    pairs.for_each(|pair| builder.add_clique(&pair));
-    builder.build()
 }

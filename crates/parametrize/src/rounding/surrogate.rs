@@ -2,7 +2,7 @@
 
 use crate::cotangent::edge_weight;
 use crate::features::Sectors;
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern};
 use seamstress_mesh::{Metric, Vertex, VertexData};
 use seamstress_parallel::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -58,9 +58,7 @@ impl<'a> Surrogate<'a> {
         let mesh = sectors.slit();
         let n = mesh.n_vertices();
         let ends = |h| [mesh.origin(h).0, mesh.tip(h).0];
-        let mut builder = PatternBuilder::new(n);
-        mesh.edges().for_each(|h| builder.add_clique(&ends(h)));
-        let pattern = builder.build();
+        let pattern = Pattern::of_cliques(n, mesh.edges().map(ends));
         let vertices = mesh.vertices().map(|s| (s.0, sectors.vertex(s).0));
         let order = sectors.dissection().induced(n, vertices);
         let mut cholesky = Cholesky::analyze(&pattern, &order)?;

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use seamstress_linalg::ordering::expand;
-use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, PatternBuilder, Scalar};
+use seamstress_linalg::{Cholesky, NotPositiveDefinite, Pattern, Scalar};
 
 /// Shift of the diagonal; the rows have weights of order one and more.
 const SHIFT: f64 = 1e-8;
@@ -117,9 +117,7 @@ impl<T: Scalar + From<f64> + std::ops::AddAssign + std::ops::Mul<Output = T>> Ma
         cliques: impl Iterator<Item = Vec<u32>>,
         order: &[u32],
     ) -> Result<Self, NotPositiveDefinite> {
-        let mut builder = PatternBuilder::new(n);
-        cliques.for_each(|clique| builder.add_clique(&clique));
-        let pattern = builder.build();
+        let pattern = Pattern::of_cliques(n, cliques);
         let cholesky = Cholesky::analyze(&pattern, order)?;
         let matrix = vec![T::from(0.0); pattern.len()];
         Ok(Self { pattern, matrix, cholesky })

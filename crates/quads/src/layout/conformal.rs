@@ -4,7 +4,7 @@ use super::{LayoutError, QuadLayout, lay_out_squares};
 use crate::QuadMesh;
 use num_complex::Complex64;
 use seamstress_linalg::ordering::{Graph, fill_reducing_order};
-use seamstress_linalg::{Cholesky, Pattern, PatternBuilder};
+use seamstress_linalg::{Cholesky, Pattern};
 use seamstress_mesh::Halfedge;
 use seamstress_parametrize::cut::Cut;
 
@@ -84,13 +84,12 @@ impl System {
             layout.mesh.faces().map(|f| f.halfedges().map(|h| cut.wedge[h] as usize)).collect();
         let unknowns: Vec<Vec<u32>> =
             faces.iter().map(|f| f.iter().filter_map(|&w| number[w]).collect()).collect();
-        let mut builder = PatternBuilder::new(n);
-        unknowns.iter().for_each(|clique| builder.add_clique(clique));
+        let pattern = Pattern::of_cliques(n, unknowns.iter());
         let edges = unknowns.iter().flat_map(|clique| {
             (0..clique.len()).flat_map(move |i| (0..i).map(move |j| (clique[i], clique[j])))
         });
         let order = fill_reducing_order(&Graph::from_edges(n, edges));
-        Self { faces, pattern: builder.build(), order }
+        Self { faces, pattern, order }
     }
 
     fn solve(
