@@ -33,8 +33,8 @@ pub struct Polished {
     pub iterations: usize,
 }
 
-/// Weight of the energy at first, against tau squared.
-const FIRST_WEIGHT: f64 = 1.0;
+/// Weight of the energy at first and at least, against tau squared: with less the energy rises for next to nothing.
+const LEAST_WEIGHT: f64 = 1.0;
 /// Iterations before the weight changes: those in which the run leaves its start.
 const PATIENCE: usize = 3;
 /// The weight is multiplied by the rise to come as a part of the one allowed, squared where it is above: it has less time to
@@ -124,7 +124,7 @@ impl Search {
         Self {
             least: start.energy,
             allowed: max_energy_rise * start.energy,
-            weight: FIRST_WEIGHT,
+            weight: LEAST_WEIGHT,
             count: 0,
             last_rise: SMALLEST_RISE,
             idle: 0,
@@ -144,7 +144,7 @@ impl Search {
             let trend = (rise / self.last_rise).clamp(1.0 / LARGEST_TREND, LARGEST_TREND);
             let coming = (rise * trend * trend).max(SMALLEST_RISE);
             let change = if coming > 1.0 { coming * coming } else { coming };
-            self.weight *= change.clamp(CHANGE.0, CHANGE.1);
+            self.weight = (self.weight * change.clamp(CHANGE.0, CHANGE.1)).max(LEAST_WEIGHT);
         }
         self.count += 1;
         self.last_rise = rise;

@@ -19,6 +19,8 @@ const QUAD_CELLS: f64 = 4.0;
 const GUIDED: f64 = 2.0;
 /// Spikes that are small against the cells may be flattened.
 const QUAD_DEVIATION: f64 = 3.5;
+/// What lowering tau to its e-th part is worth, as mean symmetric Dirichlet energy.
+const TAU_WORTH: f64 = 0.005;
 /// A layout has 0.65 to 1.2 times the excess energy estimated on most meshes; far more on those with thin blades, or with
 /// features close to each other, where the estimate says little about cones.
 const TRUST: f64 = 1.3;
@@ -76,7 +78,8 @@ impl Cleaned {
 
     /// Whether the cones saved are worth what a layout without them costs more than one with them.
     pub(super) fn is_worth(&self, without: &RelaxedLayout, with: &RelaxedLayout) -> bool {
-        without.excess() < with.excess() + self.worth
+        let cost = |layout: &RelaxedLayout| layout.excess() + TAU_WORTH * layout.tau().ln();
+        cost(without) < cost(with) + self.worth
     }
 }
 

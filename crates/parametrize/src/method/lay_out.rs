@@ -11,8 +11,8 @@ use crate::layout::ladder::{self, LayoutEffort};
 use crate::progress::{Watch, unless_cancelled};
 use crate::rounding::Rounding;
 
-/// The relaxed layout of cleaned matchings, if it is as good as their estimate; else the better one of it and that of the
-/// rounded matchings, for which so much is tried.
+/// The better one of the relaxed layouts of cleaned and of rounded matchings. Little is tried for the latter where the first
+/// is as good as estimated, and otherwise so much.
 ///
 /// # Errors
 /// [`MethodError`].
@@ -28,15 +28,21 @@ pub(super) fn lay_out<'m>(
     let Some(cleaned) = cleaned else {
         return lay_out_rounded(domain, rounding, effort, start, options, watch);
     };
-    let without = match lay_out_cleaned(&domain, &cleaned.start, options, watch)? {
-        // The estimate knows nothing of what directions cost.
-        Some(layout) if domain.guide.is_some() || cleaned.is_met_by(&layout) => {
-            return Ok((domain, rounding, layout));
+    let without = lay_out_as_given(&domain, &cleaned.start, options, watch)?;
+    let is_met = without.as_ref().is_some_and(|without| cleaned.is_met_by(without));
+    let with = match without {
+        // Along directions rounded matchings have far too many cones.
+        Some(without) if domain.guide.is_some() || is_met && options.fast => {
+            return Ok((domain, rounding, without));
         }
-        other => other,
+        Some(without) if is_met => {
+            let with = lay_out_as_given(&domain, &rounding.start, options, watch)?;
+            let better = with.filter(|with| !cleaned.is_worth(&without, with));
+            return Ok((domain, rounding, better.unwrap_or(without)));
+        }
+        _ => lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch),
     };
     let all = domain.features();
-    let with = lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch);
     match (without, unless_cancelled(with)?) {
         // Neither is worth a feature.
         (Some(without), Ok((fewer, _, with)))
@@ -49,13 +55,13 @@ pub(super) fn lay_out<'m>(
     }
 }
 
-/// The relaxed layout of cleaned matchings, if there is one.
+/// The relaxed layout of matchings with the features there are, if there is one.
 ///
 /// # Errors
 /// [`MethodError`].
-pub(super) fn lay_out_cleaned(
+pub(super) fn lay_out_as_given(
     domain: &Domain<'_>,
-    cleaned: &FramedCut,
+    start: &FramedCut,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
@@ -65,7 +71,7 @@ pub(super) fn lay_out_cleaned(
         Some(_) => LayoutEffort::Thorough,
     };
     let (sectors, metric) = (&domain.sectors, &domain.metric);
-    let layout = ladder::lay_out(sectors, metric, cleaned, effort, watch);
+    let layout = ladder::lay_out(sectors, metric, start, effort, watch);
     match unless_cancelled(layout)? {
         Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), options, watch)?)),
         // As they were rounded along a guide, cones are far too many.

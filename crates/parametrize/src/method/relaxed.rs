@@ -7,6 +7,7 @@ use crate::layout::ladder::SeamlessLayout;
 use crate::layout::newton::NewtonOptions;
 use crate::layout::polish::{PolishOptions, polish as lower_tau};
 use crate::progress::{SolveError, Watch};
+use crate::quality::Figures;
 
 /// Most layouts are at the minimum after ten iterations. One that lowers the energy by so small a part is followed by hardly
 /// any that does as much as a millionth.
@@ -18,6 +19,7 @@ const FAST_TOLERANCE: f64 = 1e-3;
 pub(super) struct RelaxedLayout {
     pub(super) layout: SeamlessLayout,
     symmetric_dirichlet: f64,
+    tau: f64,
     /// Newton iterations, those of the layout included.
     pub(super) iterations: usize,
 }
@@ -26,6 +28,11 @@ impl RelaxedLayout {
     /// The energy beyond that of an isometry.
     pub(super) fn excess(&self) -> f64 {
         self.symmetric_dirichlet - 4.0
+    }
+
+    /// Its worst distortion.
+    pub(super) fn tau(&self) -> f64 {
+        self.tau
     }
 }
 
@@ -50,7 +57,8 @@ pub(super) fn relax(
     layout.y = solution.y;
     layout.y.iter_mut().for_each(|x| *x *= figures.scale);
     let iterations = layout.steps + solution.iterations;
-    Ok(RelaxedLayout { layout, symmetric_dirichlet: figures.symmetric_dirichlet, iterations })
+    let Figures { symmetric_dirichlet, tau, .. } = figures;
+    Ok(RelaxedLayout { layout, symmetric_dirichlet, tau, iterations })
 }
 
 /// A relaxed layout with its worst triangles polished, at the best global scale; and the iterations it took.

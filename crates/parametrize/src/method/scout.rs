@@ -5,7 +5,7 @@
 //! some of the mesh's own.
 
 use super::domain::Domain;
-use super::lay_out::lay_out_cleaned;
+use super::lay_out::lay_out_as_given;
 use super::log::StageLog;
 use super::relaxed::RelaxedLayout;
 use super::start::repaired;
@@ -111,7 +111,7 @@ pub(super) fn scout(
     watch.pulse()?;
     let Some(holonomy) = holonomy else { return Ok(None) };
     let start = holonomy?.fix(start);
-    let Some(layout) = lay_out_cleaned(domain, &start, options, watch)? else { return Ok(None) };
+    let Some(layout) = lay_out_as_given(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
     Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))
 }

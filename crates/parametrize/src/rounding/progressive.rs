@@ -19,7 +19,7 @@ const LAST_THRESHOLD: f64 = 1.0;
 const SAME_COST: f64 = 1e-9;
 /// A new layout is worth its time once this part of the edges that were open at the last one was rounded, and this part of
 /// all.
-const OPEN_SHARE: f64 = 0.3;
+const OPEN_SHARE: f64 = 0.05;
 const LEAST_SHARE: f64 = 0.0025;
 /// Layout iterations before the first round towards a guide, which is far away.
 const GUIDED_ITERATIONS: usize = 8;
