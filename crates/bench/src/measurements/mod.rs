@@ -10,6 +10,7 @@ mod fields;
 mod integer;
 mod maps;
 mod methods;
+mod miq;
 mod objectives;
 mod quads;
 mod recovery;
@@ -40,6 +41,7 @@ pub enum Measurement {
     Sizes(sizes::Args),
     Fields(fields::Args),
     Methods(methods::Args),
+    Miq(miq::Args),
     Consistency(consistency::Args),
     Recovery(recovery::Args),
 }
@@ -66,6 +68,7 @@ impl Measurement {
             Self::Sizes(args) => sizes::measure(args),
             Self::Fields(args) => fields::measure(args),
             Self::Methods(args) => methods::measure(args),
+            Self::Miq(args) => miq::measure(args),
             Self::Consistency(args) => consistency::measure(args),
             Self::Recovery(args) => recovery::measure(args),
         }

@@ -53,6 +53,7 @@ pub(super) struct Scouted {
     layout: RelaxedLayout,
     /// Of the rounding of the coarser mesh.
     stats: RoundingStats,
+    /// Whether it is as good as that of the coarser mesh lets expect, or has to do.
     is_as_expected: bool,
 }
 
@@ -113,7 +114,8 @@ pub(super) fn scout(
     let start = holonomy?.fix(start);
     let Some(layout) = lay_out_as_given(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
-    Ok(Some(Scouted { stats, is_as_expected: layout.excess() <= TRUST * excess, layout }))
+    let is_as_expected = options.fast || layout.excess() <= TRUST * excess;
+    Ok(Some(Scouted { stats, is_as_expected, layout }))
 }
 
 fn is_worthwhile(domain: &Domain<'_>, start: &Start, options: &MapOptions) -> bool {

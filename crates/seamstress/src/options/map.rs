@@ -120,7 +120,7 @@ pub struct MapOptions {
         default_value_t = Self::default().corner_weight))]
     pub corner_weight: f64,
 
-    /// Take about half of the time, as for a preview: cones are looked for on a coarser mesh still, the mean distortion
+    /// Take less than half of the time, as for a preview: cones are looked for on a coarser mesh still, the mean distortion
     /// stays a little above the least, and the largest (tau) is not polished
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
     pub fast: bool,
