@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use seamstress_certify::{AlignmentTolerance, IntegralTolerance, Map, Tolerance};
+use seamstress_certify::{Map, Tolerance};
 use seamstress_fuzz::Bytes;
 
 fuzz_target!(|data: &[u8]| {
@@ -26,8 +26,8 @@ fuzz_target!(|data: &[u8]| {
         (0..3 * faces.len()).map(|_| [bytes.coordinate(), bytes.coordinate()]).collect();
     let verdict = |uvs: &[[f64; 2]]| {
         let map = Map::new(n_vertices, &faces, uvs).ok()?;
-        let _ = map.alignment(&edges, &AlignmentTolerance::default());
-        let _ = map.integers(&edges, IntegralTolerance::EXACT);
+        let _ = map.alignment(&edges, &Tolerance::default());
+        let _ = map.integers(&edges, &Tolerance::default());
         let found = map.seamless(&Tolerance::default()).ok()?;
         let matchings: Vec<_> = found.seams.iter().map(|seam| (seam.left, seam.matching)).collect();
         Some((found.cones, matchings, found.certificate.overwound_boundary_vertices))

@@ -10,53 +10,37 @@ const DIGIT: usize = u64::BITS as usize;
 /// Digits of all products of two doubles, and room for their sum.
 const DIGITS: usize = (2 * f64::MAX_EXP - LAST_BIT) as usize / DIGIT + 3;
 
-/// A sum of products of finite doubles, as a fixed-point number that holds every bit of any of them.
-pub(crate) struct ExactSum([i128; DIGITS]);
-
-impl ExactSum {
-    pub(crate) fn new() -> Self {
-        Self([0; DIGITS])
-    }
-
-    /// Adds `a b`.
-    pub(crate) fn add(&mut self, a: f64, b: f64) {
-        let ([a, a_place], [b, b_place]) = (parts(a), parts(b));
-        let product = i128::from(a) * i128::from(b);
-        let (size, sign, place) =
-            (product.unsigned_abs(), product.signum(), (a_place + b_place) as usize);
-        let (digit, shift) = (place / DIGIT, place % DIGIT);
-        for (k, half) in [size as u64, (size >> DIGIT) as u64].into_iter().enumerate() {
-            let shifted = u128::from(half) << shift;
-            self.0[digit + k] += sign * i128::from(shifted as u64);
-            self.0[digit + k + 1] += sign * (shifted >> DIGIT) as i128;
+/// A sum of products of finite doubles without rounding: its order to zero, and a double next to it; itself if it is one.
+pub(crate) fn exact_sum(products: impl IntoIterator<Item = [f64; 2]>) -> (Ordering, f64) {
+    // A fixed-point number that holds every bit of any product.
+    let mut digits = [0i128; DIGITS];
+    for factors in products {
+        let [[a, a_place], [b, b_place]] = factors.map(parts);
+        let (product, place) = (i128::from(a) * i128::from(b), (a_place + b_place) as usize);
+        let (size, sign) = (product.unsigned_abs(), product.signum());
+        for (half, digit) in [size as u64, (size >> DIGIT) as u64].into_iter().zip(place / DIGIT..)
+        {
+            let shifted = u128::from(half) << (place % DIGIT);
+            digits[digit] += sign * i128::from(shifted as u64);
+            digits[digit + 1] += sign * (shifted >> DIGIT) as i128;
         }
     }
-
-    /// Its digits other than zero and their places, from the first to the last. Each is at most half of a unit of the digit
-    /// before, of either sign, so that the first has the sign of the number.
-    fn digits(mut self) -> impl Iterator<Item = (usize, i128)> {
-        for k in 1..DIGITS {
-            let carry = (self.0[k - 1] + (1 << (DIGIT - 1))) >> DIGIT;
-            self.0[k - 1] -= carry << DIGIT;
-            self.0[k] += carry;
-        }
-        self.0.into_iter().enumerate().rev().filter(|&(_, digit)| digit != 0)
+    // Then each is at most half of a unit of the next one, of either sign, so that the last has the sign of the number.
+    for k in 1..DIGITS {
+        let carry = (digits[k - 1] + (1 << (DIGIT - 1))) >> DIGIT;
+        digits[k - 1] -= carry << DIGIT;
+        digits[k] += carry;
     }
-
-    /// Its sign, as its order to zero.
-    pub(crate) fn sign(self) -> Ordering {
-        self.digits().next().map_or(Ordering::Equal, |(_, digit)| digit.cmp(&0))
-    }
-
-    /// A double next to it; itself if it is one.
-    pub(crate) fn value(self) -> f64 {
-        self.digits().fold(0.0, |sum, (k, digit)| {
-            // In two factors: one may be out of range.
-            let exponent = (DIGIT * k) as i32 + LAST_BIT;
-            let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| f64::from(k).exp2());
-            sum + digit as f64 * half * rest
-        })
-    }
+    let digits = (0..DIGITS).rev().map(|k| (digits[k], k as i32));
+    let mut digits = digits.filter(|(digit, _)| *digit != 0).peekable();
+    let sign = digits.peek().map_or(Ordering::Equal, |(digit, _)| digit.cmp(&0));
+    let value = digits.fold(0.0, |sum, (digit, k)| {
+        // In two factors: one may be out of range.
+        let exponent = DIGIT as i32 * k + LAST_BIT;
+        let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| f64::from(k).exp2());
+        sum + digit as f64 * half * rest
+    });
+    (sign, value)
 }
 
 /// A double as a whole number times 2 to the power of the second, counted from the last bit of the smallest double.
@@ -78,11 +62,8 @@ pub(crate) fn side(of: Arrow, other: Arrow) -> Ordering {
     if size > SMALLEST && rounded.abs() > ROUNDING * size && size.is_finite() {
         return if rounded > 0.0 { Ordering::Greater } else { Ordering::Less };
     }
-    let mut sum = ExactSum::new();
-    for (x, y) in [(b, d), (c, b), (d, a), (a, c)] {
-        add_cross(&mut sum, x, y);
-    }
-    sum.sign()
+    let pairs = [(b, d), (c, b), (d, a), (a, c)];
+    exact_sum(pairs.into_iter().flat_map(|(x, y)| cross(x, y))).0
 }
 
 /// More than the rounding of a cross product, relative to the sum of its two terms: `3 ε + 16 ε²` with ε = 2^-53
@@ -91,29 +72,24 @@ const ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Above this size of the terms nothing that underflows counts.
 const SMALLEST: f64 = 1e-280;
 
-/// Adds the cross product of two points.
-fn add_cross(sum: &mut ExactSum, a: Point, b: Point) {
-    sum.add(a[0], b[1]);
-    sum.add(-a[1], b[0]);
+/// The products whose sum is the cross product of two points.
+fn cross(a: Point, b: Point) -> [[f64; 2]; 2] {
+    [[a[0], b[1]], [-a[1], b[0]]]
 }
 
-/// The area of triangles of the plane, counter-clockwise positive, without rounding but of the result.
-pub(crate) fn area(triangles: impl Iterator<Item = [Point; 3]>) -> f64 {
-    let mut doubled = ExactSum::new();
-    for [a, b, c] in triangles {
-        [(a, b), (b, c), (c, a)].into_iter().for_each(|(x, y)| add_cross(&mut doubled, x, y));
-    }
-    0.5 * doubled.value()
+/// The area of triangles of the plane by their corners, counter-clockwise positive, without rounding but of the result.
+pub(crate) fn area(corners: &[Point]) -> f64 {
+    let sides = |of: &[Point]| [[of[0], of[1]], [of[1], of[2]], [of[2], of[0]]];
+    let sides = corners.chunks_exact(3).flat_map(sides);
+    0.5 * exact_sum(sides.flat_map(|[a, b]| cross(a, b))).1
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn sum(terms: &[[f64; 2]]) -> ExactSum {
-        let mut sum = ExactSum::new();
-        terms.iter().for_each(|&[a, b]| sum.add(a, b));
-        sum
+    fn sum(terms: &[[f64; 2]]) -> (Ordering, f64) {
+        exact_sum(terms.iter().copied())
     }
 
     #[test]
@@ -131,7 +107,7 @@ mod tests {
             (&[[-0.0, 3.0], [0.0, -3.0]], Ordering::Equal),
         ];
         for (terms, sign) in cases {
-            assert_eq!(sum(terms).sign(), sign, "{terms:?}");
+            assert_eq!(sum(terms).0, sign, "{terms:?}");
         }
     }
 
@@ -140,26 +116,24 @@ mod tests {
         for x in
             [0.0, 1.0, -1.0, 0.1, -1e300, 3e-200, 9_007_199_254_740_993.0, 1e-320, 2f64.powi(75)]
         {
-            assert_eq!(sum(&[[x, 1.0]]).value(), x);
-            assert_eq!(sum(&[[x, 1.0], [1e9, 1e9], [-1.0, 1e18]]).value(), x);
-            assert_eq!(sum(&[[x, 0.5], [0.5, x]]).value(), x);
+            assert_eq!(sum(&[[x, 1.0]]).1, x);
+            assert_eq!(sum(&[[x, 1.0], [1e9, 1e9], [-1.0, 1e18]]).1, x);
+            assert_eq!(sum(&[[x, 0.5], [0.5, x]]).1, x);
         }
         // Of all bits and sizes, across every place where one digit ends.
         for exponent in -1022..1023 {
             for x in [1.0, 1.0f64.next_up(), 2.0f64.next_down(), 1.0 + 0.5f64.powi(26)] {
                 let x = x * f64::from(exponent).exp2();
-                assert_eq!(sum(&[[x, 1.0]]).value(), x);
-                assert_eq!(sum(&[[-1.0, x]]).value(), -x);
-                assert_eq!(sum(&[[x, 1.0], [-1.0, x]]).value(), 0.0);
-                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_up()]]).sign(), Ordering::Less);
-                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_down()]]).sign(), Ordering::Greater);
+                assert_eq!(sum(&[[x, 1.0]]).1, x);
+                assert_eq!(sum(&[[-1.0, x]]).1, -x);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x]]).1, 0.0);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_up()]]).0, Ordering::Less);
+                assert_eq!(sum(&[[x, 1.0], [-1.0, x.next_down()]]).0, Ordering::Greater);
             }
         }
-        let mut many = ExactSum::new();
-        (0..1000).for_each(|_| many.add(-1e308, 1e308));
-        (0..1000).for_each(|_| many.add(1e308, 1e308));
-        many.add(0.1, 0.1);
-        assert_eq!(many.value(), 0.1 * 0.1);
+        let many = |a, b| std::iter::repeat_n([a, b], 1000);
+        let many = many(-1e308, 1e308).chain(many(1e308, 1e308)).chain([[0.1, 0.1]]);
+        assert_eq!(exact_sum(many).1, 0.1 * 0.1);
     }
 
     #[test]
@@ -206,9 +180,9 @@ mod tests {
     fn whole_cells_add_up_to_whole_numbers() {
         // One square far from the origin of many triangles, and many of few.
         let fans = (1..200).flat_map(|k| fan(3.0, 0.37 * f64::from(k), 1.0 / f64::from(k)));
-        assert_eq!(area(fans), 199.0 * 9.0);
+        assert_eq!(area(fans.collect::<Vec<_>>().as_flattened()), 199.0 * 9.0);
         let [first, ..] = fan(1.0, 0.5, 0.3);
-        assert_eq!(area([first].into_iter()), 0.15);
-        assert_eq!(area([first, [first[0], first[2], first[1]]].into_iter()), 0.0);
+        assert_eq!(area(&first), 0.15);
+        assert_eq!(area(&[first, [first[0], first[2], first[1]]].concat()), 0.0);
     }
 }

@@ -7,26 +7,23 @@
 //! * [`Map`]: a map of a triangle mesh; [`Map::seamless`], [`Map::alignment`] and [`Map::integers`] certify it.
 //! * [`Quads`]: quads against the surface and the map that they come from.
 //! * [`compare_source`]: a map against the mesh it was made from.
+//! * [`Obj`]: what a file says.
 //!
 //! `docs/theory/03-certificate.md` explains the checks and their tolerances.
 
-mod alignment;
 mod exact;
-mod integers;
+mod file;
+mod grid;
 mod manifold;
 mod map;
 mod plane;
 mod quads;
 mod seamless;
-mod source;
-mod tolerance;
-mod violation;
+mod verdict;
 
-pub use alignment::Alignment;
-pub use integers::IntegerCertificate;
+pub use file::{Obj, Triangles, compare_source};
+pub use grid::{Alignment, IntegerCertificate};
 pub use map::Map;
 pub use quads::{QuadCertificate, Quads};
 pub use seamless::{Certificate, Cone, Seam, Seamless};
-pub use source::compare_source;
-pub use tolerance::{AlignmentTolerance, IntegralTolerance, Tolerance, ToleranceError};
-pub use violation::{Violation, Violations};
+pub use verdict::{Checked, Tolerance, Violation, Violations};

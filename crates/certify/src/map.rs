@@ -1,9 +1,9 @@
 //! A map of a triangle mesh: its corners in the plane, across edges and around vertices.
 
 use crate::exact::side;
-use crate::manifold::Manifold;
+use crate::manifold::{Manifold, Star};
 use crate::plane::{Arrow, Point, angle, difference, nearest_quarters, quadrant, scaled, turned};
-use crate::violation::{Violation, Violations};
+use crate::verdict::{Checked, Violation, Violations};
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,9 +12,9 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Debug)]
 pub struct Map<'a> {
     pub(crate) mesh: Manifold<3>,
-    uvs: &'a [Point],
+    pub(crate) uvs: &'a [Point],
     /// Quarter turns from the face of each half-edge to that of its twin, the nearest; 0 at the boundary.
-    quarters: Vec<i32>,
+    pub(crate) quarters: Vec<i32>,
 }
 
 impl<'a> Map<'a> {
@@ -22,22 +22,16 @@ impl<'a> Map<'a> {
     ///
     /// # Errors
     /// Faces that are no oriented manifold, and UVs that are missing or not finite.
-    pub fn new(
-        n_vertices: usize,
-        faces: &[[u32; 3]],
-        uvs: &'a [[f64; 2]],
-    ) -> Result<Self, Violations> {
+    pub fn new(n_vertices: usize, faces: &[[u32; 3]], uvs: &'a [Point]) -> Checked<Self> {
         let (expected, found) = (3 * faces.len(), uvs.len());
-        if expected != found {
-            return Err(Violations(vec![Violation::UvCount { expected, found }]));
-        }
+        let is_other = expected != found;
+        Violations::unless_none(is_other.then_some(Violation::UvCount { expected, found }))?;
         let is_finite = |uvs: &[Point]| uvs.as_flattened().iter().all(|x| x.is_finite());
-        let strange = uvs.chunks(3).zip(0..).filter(|(uvs, _)| !is_finite(uvs));
-        Violations::unless_none(strange.map(|(_, face)| Violation::NonFiniteUv { face }))?;
+        let strange = (0..).zip(uvs.chunks(3)).filter(|(_, uvs)| !is_finite(uvs));
+        Violations::unless_none(strange.map(|(face, _)| Violation::NonFiniteUv { face }))?;
         let mesh = Manifold::new(n_vertices, faces)?;
         let mut map = Self { quarters: vec![0; uvs.len()], mesh, uvs };
-        let interior: Vec<_> = map.mesh.interior_edges().collect();
-        for (h, t) in interior {
+        for (h, t) in map.mesh.interior_edges() {
             let [a, b, c, d] = scaled(map.images(h, t)).0;
             let quarters = nearest_quarters(difference(b, a), difference(d, c));
             (map.quarters[h], map.quarters[t]) = (quarters, -quarters);
@@ -45,23 +39,9 @@ impl<'a> Map<'a> {
         Ok(map)
     }
 
-    pub(crate) fn uv(&self, corner: usize) -> Point {
-        self.uvs[corner]
-    }
-
-    /// Quarter turns from the face of a half-edge to that of its twin.
-    pub(crate) fn quarters(&self, h: usize) -> i32 {
-        self.quarters[h]
-    }
-
-    /// The corners of a face in the plane.
-    pub(crate) fn triangle(&self, face: usize) -> [Point; 3] {
-        [0, 1, 2].map(|k| self.uv(3 * face + k))
-    }
-
-    /// The ends of both images of an edge: of the half-edge in its face, then in that of its twin.
-    pub(crate) fn images(&self, h: usize, t: usize) -> [Point; 4] {
-        [h, self.mesh.next(h), self.mesh.next(t), t].map(|corner| self.uv(corner))
+    /// From one corner to another.
+    fn arrow(&self, from: usize, to: usize) -> Arrow {
+        [self.uvs[from], self.uvs[to]]
     }
 
     /// The ends of the image of a half-edge.
@@ -69,30 +49,26 @@ impl<'a> Map<'a> {
         self.arrow(h, self.mesh.next(h))
     }
 
+    /// The ends of both images of an edge: of the half-edge in its face, then in that of its twin.
+    pub(crate) fn images(&self, h: usize, t: usize) -> [Point; 4] {
+        let ([a, b], [d, c]) = (self.image(h), self.image(t));
+        [a, b, c, d]
+    }
+
     /// The sum of the angles of corners, quarter turns; those of a flipped triangle are negative.
     pub(crate) fn angle_sum(&self, corners: &[usize]) -> f64 {
         let angle_at = |&corner: &usize| {
             let corners = [corner, self.mesh.next(corner), self.mesh.prev(corner)];
-            let [at, right, left] = scaled(corners.map(|corner| self.uv(corner))).0;
+            let [at, right, left] = scaled(corners.map(|corner| self.uvs[corner])).0;
             angle(difference(right, at), difference(left, at))
         };
         corners.iter().map(angle_at).sum::<f64>() / FRAC_PI_2
     }
 
-    /// From one corner to another.
-    fn arrow(&self, from: usize, to: usize) -> Arrow {
-        [self.uv(from), self.uv(to)]
-    }
-
     /// The orientation of a face: greater than equal if it is positive.
     pub(crate) fn orientation(&self, face: usize) -> Ordering {
-        let [a, b, c] = self.triangle(face);
+        let [a, b, c] = [0, 1, 2].map(|k| self.uvs[3 * face + k]);
         side([a, b], [a, c])
-    }
-
-    /// Whether a vertex lies off the boundary and turns by another number of quarters than four.
-    pub(crate) fn is_cone(&self, vertex: u32) -> bool {
-        self.mesh.is_interior(vertex) == Some(true) && self.turning(vertex).0 != 4
     }
 
     /// By how many quadrants the edges around a vertex turn, followed from the first to the last and at an interior
@@ -101,30 +77,26 @@ impl<'a> Map<'a> {
     /// The angle of a triangle that is not flipped is less than a half turn, so that the quadrants of its sides tell
     /// how many axes lie between them; across an edge that fits, rounding moves an image by at most one quadrant.
     /// Around an interior vertex the sum is its angle in quarters, a whole number by itself.
-    pub(crate) fn turning(&self, vertex: u32) -> (i32, bool) {
+    pub(crate) fn turning(&self, star: &Star) -> (i32, bool) {
         // Quarters from the chart of the first face to the one at hand.
-        let (mut quadrants, mut chart) = (0, 0);
-        let (mut first, mut last) = (None, None);
-        for corner in self.mesh.fan(vertex) {
+        let (mut quadrants, mut chart, mut last) = (0, 0, [[0.0; 2]; 2]);
+        for &corner in &star.corners {
             let before = self.mesh.prev(corner);
-            let sides = [self.mesh.next(corner), before].map(|end| self.arrow(corner, end));
-            let [right, left] = sides.map(quadrant);
+            last = self.arrow(corner, before);
+            let [right, left] = [self.image(corner), last].map(quadrant);
+            last = last.map(|end| turned(end, -chart));
             quadrants += match self.orientation(corner / 3) {
                 Ordering::Less => -(right - left).rem_euclid(4),
                 _ => (left - right).rem_euclid(4),
             };
-            first.get_or_insert(sides[0]);
-            last = Some(sides[1].map(|end| turned(end, -chart)));
-            if let Some(twin) = self.mesh.twin(before) {
-                let seen = quadrant(self.image(twin));
-                let moved = seen - self.quarters(before) - left;
+            if let Some(twin) = self.mesh.twin[before] {
+                let moved = quadrant(self.image(twin)) - self.quarters[before] - left;
                 quadrants += (moved + 1).rem_euclid(4) - 1;
-                chart += self.quarters(before);
+                chart += self.quarters[before];
             }
         }
-        let is_past =
-            || first.zip(last).is_some_and(|(first, last)| side(first, last) == Ordering::Greater);
-        (quadrants, quadrants > 4 || quadrants == 4 && is_past())
+        let is_past = || side(self.image(star.corners[0]), last) == Ordering::Greater;
+        (quadrants, !star.is_closed && (quadrants > 4 || quadrants == 4 && is_past()))
     }
 }
 
@@ -136,6 +108,11 @@ mod tests {
         [degrees.to_radians().cos(), degrees.to_radians().sin()]
     }
 
+    /// The turning around vertex 0.
+    fn turning_at_first(map: &Map<'_>) -> (i32, bool) {
+        map.turning(&map.mesh.stars().next().unwrap())
+    }
+
     /// What the turning around the middle of an open fan is, whose rim lies at some points: the same with its faces in
     /// charts of their own.
     fn turning_to(rim: &[Point]) -> (i32, bool) {
@@ -145,7 +122,7 @@ mod tests {
             let triangles = rim.windows(2).map(|ends| [[0.0; 2], ends[0], ends[1]]).zip(0..);
             let uvs: Vec<Point> =
                 triangles.flat_map(|(points, k)| points.map(|p| turned(p, k * chart))).collect();
-            Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0)
+            turning_at_first(&Map::new(n as usize + 1, &faces, &uvs).unwrap())
         };
         let found = turning(0);
         assert_eq!([1, 2, 3].map(turning), [found; 3]);
@@ -187,7 +164,7 @@ mod tests {
                 [[0.0; 2], at(from), at(from + degrees)].map(|p| turned(p, k * chart))
             })
             .collect();
-        Map::new(n as usize + 1, &faces, &uvs).unwrap().turning(0).0
+        turning_at_first(&Map::new(n as usize + 1, &faces, &uvs).unwrap()).0
     }
 
     #[test]
@@ -208,7 +185,7 @@ mod tests {
             let [east, north, west] = [[1.0, 0.0], [0.0, 1.0], [-1.0, -1e-9]];
             let (one, other) = ([one, north[1]], [other, north[1]]);
             let uvs = [[0.0; 2], east, one, [0.0; 2], other, west, [0.0; 2], west, [1.0, -0.0]];
-            assert_eq!(Map::new(4, &faces, &uvs).unwrap().turning(0).0, 4);
+            assert_eq!(turning_at_first(&Map::new(4, &faces, &uvs).unwrap()).0, 4);
         }
     }
 }

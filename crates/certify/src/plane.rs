@@ -69,9 +69,9 @@ pub(crate) fn scaled<const N: usize>(points: [Point; N]) -> ([Point; N], f64) {
     (points.map(|p| p.map(|x| x * factor)), factor)
 }
 
-/// The largest coordinate.
+/// The largest coordinate; no number if one of them is none.
 pub(crate) fn largest(points: &[Point]) -> f64 {
-    points.as_flattened().iter().fold(0.0, |largest, x| largest.max(x.abs()))
+    points.as_flattened().iter().map(|x| x.abs()).max_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Quads against the surface and the map that they come from.
 
 use crate::manifold::Manifold;
-use crate::violation::{Violation, Violations};
+use crate::verdict::{Checked, Violation, Violations};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Quads, and what they were extracted from.
@@ -40,41 +40,38 @@ impl Quads<'_> {
     ///
     /// # Errors
     /// Every violation, each naming its element.
-    pub fn check(&self) -> Result<QuadCertificate, Violations> {
+    pub fn check(&self) -> Checked<QuadCertificate> {
         let quads = Manifold::new(self.sources.len(), self.quads)?;
         let surface = Manifold::new(self.n_vertices, self.faces)?;
-        let (piece_of, piece_characteristics) = quads.components();
-        let (component_of, characteristics) = surface.components();
-        let component = |v: &u32| component_of.get(self.sources[*v as usize] as usize);
-        let is_stray = |quad: &[u32; 4]| {
-            component(&quad[0]).is_none()
-                || quad.iter().any(|v| component(v) != component(&quad[0]))
-        };
-        let stray = self.quads.iter().zip(0..).filter(|(quad, _)| is_stray(quad));
-        Violations::unless_none(stray.map(|(_, quad)| Violation::StrayQuad { quad }))?;
-
-        let open: BTreeSet<_> = surface.boundary().map(|h| component_of[h / 3]).collect();
-        let open_pieces: BTreeSet<_> = quads.boundary().map(|h| piece_of[h / 4]).collect();
+        let ((piece_of, pieces), (component_of, components)) =
+            (quads.components(), surface.components());
+        let component = |v: u32| component_of.get(self.sources[v as usize] as usize).copied();
         let mut pieces_of: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        for (quad, &piece) in self.quads.iter().zip(&piece_of) {
-            component(&quad[0]).map(|&of| pieces_of.entry(of).or_default().insert(piece));
+        let mut stray = Vec::new();
+        for ((quad, corners), &piece) in (0..).zip(self.quads).zip(&piece_of) {
+            match component(corners[0]) {
+                Some(of) if corners.iter().all(|&v| component(v) == Some(of)) => {
+                    pieces_of.entry(of).or_default().insert(piece);
+                }
+                _ => stray.push(Violation::StrayQuad { quad }),
+            }
         }
-        pieces_of.retain(|component, _| !(self.is_trimmed && open.contains(component)));
-        let wrong = |(&component, pieces): (&usize, &BTreeSet<usize>)| {
-            let surface = characteristics[component];
-            let quads = pieces.iter().map(|&piece| piece_characteristics[piece]).sum();
-            let pieces_end = !pieces.is_disjoint(&open_pieces);
-            if pieces.len() > 1 {
-                Some(Violation::QuadPieces { component, pieces: pieces.len() })
-            } else if quads != surface {
-                Some(Violation::QuadTopology { component, quads, surface })
-            } else {
-                let differs = pieces_end != open.contains(&component);
-                differs.then_some(Violation::QuadBoundary { component })
+        Violations::unless_none(stray)?;
+        pieces_of.retain(|&component, _| components[component].1 || !self.is_trimmed);
+        let wrong = |(&component, of): (&usize, &BTreeSet<usize>)| {
+            let (surface, is_closed) = components[component];
+            let quads = of.iter().map(|&piece| pieces[piece].0).sum();
+            let differs = of.iter().all(|&piece| pieces[piece].1) != is_closed;
+            match of.len() {
+                2.. => Some(Violation::QuadPieces { component, pieces: of.len() }),
+                _ if quads != surface => {
+                    Some(Violation::QuadTopology { component, quads, surface })
+                }
+                _ => differs.then_some(Violation::QuadBoundary { component }),
             }
         };
         Violations::unless_none(pieces_of.iter().filter_map(wrong))?;
-        let irregular = indices(&quads).values().sum();
+        let irregular = indices(&quads).len();
         Ok(QuadCertificate { quads: self.quads.len(), components: pieces_of.len(), irregular })
     }
 
@@ -84,29 +81,25 @@ impl Quads<'_> {
     ///
     /// # Errors
     /// Every violation.
-    pub fn agree_with(&self, cones: &[i32], area: f64) -> Result<(), Violations> {
-        let found = indices(&Manifold::new(self.sources.len(), self.quads)?);
-        let expected = counts(cones.iter().copied());
-        let all: BTreeSet<i32> = found.keys().chain(expected.keys()).copied().collect();
-        let fault = |index| {
-            let [irregular, cones] =
-                [&found, &expected].map(|all| all.get(&index).copied().unwrap_or_default());
-            (irregular != cones).then_some(Violation::QuadIndex { index, irregular, cones })
-        };
+    pub fn agree_with(&self, cones: &[i32], area: f64) -> Checked<()> {
+        let mut counts: BTreeMap<i32, [usize; 2]> = BTreeMap::new();
+        let irregular = indices(&Manifold::new(self.sources.len(), self.quads)?);
+        irregular.into_iter().for_each(|index| counts.entry(index).or_default()[0] += 1);
+        cones.iter().for_each(|&index| counts.entry(index).or_default()[1] += 1);
+        let wrong = counts.into_iter().filter(|(_, [irregular, cones])| irregular != cones);
+        let wrong = wrong.map(|(index, [irregular, cones])| Violation::QuadIndex {
+            index,
+            irregular,
+            cones,
+        });
         let quads = self.quads.len();
         let count = (quads as f64 != area.round()).then_some(Violation::QuadCount { quads, area });
-        Violations::unless_none(all.into_iter().filter_map(fault).chain(count))
+        Violations::unless_none(wrong.chain(count))
     }
 }
 
-/// How many interior vertices there are of each index other than 0.
-fn indices(quads: &Manifold<4>) -> BTreeMap<i32, usize> {
-    let interior = quads.vertices().filter(|&v| quads.is_interior(v) == Some(true));
-    counts(interior.map(|v| 4 - quads.fan(v).count() as i32).filter(|&index| index != 0))
-}
-
-fn counts<T: Ord>(items: impl Iterator<Item = T>) -> BTreeMap<T, usize> {
-    let mut counts = BTreeMap::new();
-    items.for_each(|item| *counts.entry(item).or_default() += 1);
-    counts
+/// The indices of interior vertices other than 0.
+fn indices(quads: &Manifold<4>) -> Vec<i32> {
+    let stars = quads.stars().filter(|star| star.is_closed);
+    stars.map(|star| 4 - star.corners.len() as i32).filter(|&index| index != 0).collect()
 }

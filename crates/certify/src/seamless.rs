@@ -1,10 +1,8 @@
 //! The certificate of a seamless map.
 
-use crate::manifold::Manifold;
 use crate::map::Map;
 use crate::plane::{difference, largest, length, scaled, turned};
-use crate::tolerance::{ANGLE, Tolerance, within};
-use crate::violation::{Violation, Violations};
+use crate::verdict::{ANGLE, Checked, Tolerance, Violation, Violations};
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,7 +23,6 @@ pub struct Cone {
 
 /// An interior edge across which the UVs jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Seam {
     /// The corner at which its half-edge in the face on the left starts: three per face.
     pub left: u32,
@@ -63,7 +60,6 @@ pub struct Certificate {
 
 /// What a seamless map is made of.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Seamless {
     /// Interior vertices with an angle other than a full turn, ascending.
     pub cones: Vec<Cone>,
@@ -80,42 +76,36 @@ impl Map<'_> {
     ///
     /// # Errors
     /// Every violation, each naming its element.
-    pub fn seamless(&self, tolerance: &Tolerance) -> Result<Seamless, Violations> {
-        let faces = self.mesh.origin.len() / 3;
+    pub fn seamless(&self, tolerance: &Tolerance) -> Checked<Seamless> {
+        let faces = self.uvs.len() / 3;
         let misoriented = |face: u32| match self.orientation(face as usize) {
             Ordering::Greater => None,
             Ordering::Equal => Some(Violation::CollapsedTriangle { face }),
             Ordering::Less => Some(Violation::FlippedTriangle { face }),
         };
         let mut violations: Vec<_> = (0..faces as u32).filter_map(misoriented).collect();
-        let (seams, seam_residual) = self.seams(tolerance.seam(), &mut violations);
-        let mut figures =
-            Certificate { faces, seam_edges: seams.len(), seam_residual, ..Certificate::default() };
-        let (component_of, characteristics) = self.mesh.components();
-        let mut index_sums = vec![0i64; characteristics.len()];
+        let (seams, seam_residual) = self.seams(tolerance, &mut violations);
+        let mut figures = Certificate { faces, seam_residual, ..Certificate::default() };
+        let (component_of, components) = self.mesh.components();
+        let mut index_sums = vec![0i64; components.len()];
         let mut cones = Vec::new();
-        for vertex in self.mesh.vertices() {
-            let corners: Vec<usize> = self.mesh.fan(vertex).collect();
-            let Some(is_interior) = self.mesh.is_interior(vertex) else { continue };
-            let (turned, is_overwound) = self.turning(vertex);
+        for star in self.mesh.stars() {
+            let (turned, is_overwound) = self.turning(&star);
             // At the boundary, what edges lack to the next axis counts at one end and against it at the other.
-            let index = if is_interior { 4 } else { 2 } - turned;
-            index_sums[component_of[corners[0] / 3]] += i64::from(index);
-            if !is_interior {
-                figures.overwound_boundary_vertices += usize::from(is_overwound);
+            let index = if star.is_closed { 4 } else { 2 } - turned;
+            index_sums[component_of[star.corners[0] / 3]] += i64::from(index);
+            figures.overwound_boundary_vertices += usize::from(is_overwound);
+            if !star.is_closed {
                 continue;
             }
-            let quarters = self.angle_sum(&corners);
+            let (vertex, quarters) = (star.vertex, self.angle_sum(&star.corners));
             let off = (quarters - f64::from(turned)).abs() * FRAC_PI_2;
             figures.angle_error = figures.angle_error.max(off);
-            if !within(off, ANGLE) || turned < 1 {
-                violations.push(Violation::ConeAngle { vertex, quarters });
-            }
-            if index != 0 {
-                cones.push(Cone { vertex, index });
-            }
+            let is_wrong = !(off <= ANGLE && turned >= 1);
+            violations.extend(is_wrong.then_some(Violation::ConeAngle { vertex, quarters }));
+            cones.extend((index != 0).then_some(Cone { vertex, index }));
         }
-        for (component, (&sum, chi)) in index_sums.iter().zip(&characteristics).enumerate() {
+        for (component, (&sum, (chi, _))) in index_sums.iter().zip(&components).enumerate() {
             let (sum, expected) = (sum as f64, 4 * chi);
             if sum != expected as f64 {
                 violations.push(Violation::PoincareHopf { component, sum, expected });
@@ -124,30 +114,30 @@ impl Map<'_> {
             figures.euler_characteristic += chi;
         }
         Violations::unless_none(violations)?;
-        figures.cones = cones.len();
+        (figures.cones, figures.seam_edges) = (cones.len(), seams.len());
         Ok(Seamless { cones, seams, certificate: figures })
     }
 
     /// The edges across which the map jumps, and the largest mismatch.
-    fn seams(&self, tolerance: f64, violations: &mut Vec<Violation>) -> (Vec<Seam>, f64) {
+    fn seams(&self, tolerance: &Tolerance, violations: &mut Vec<Violation>) -> (Vec<Seam>, f64) {
         let (mut seams, mut worst) = (Vec::new(), 0.0f64);
         for (h, t) in self.mesh.interior_edges() {
             let (ends, factor) = scaled(self.images(h, t));
             let [a, b, c, d] = ends;
             let (left, right) = (difference(b, a), difference(d, c));
             let longer = length(left).max(length(right));
-            let mismatch = length(difference(right, turned(left, self.quarters(h))));
-            let translation = difference(c, turned(a, self.quarters(h)));
+            let mismatch = length(difference(right, turned(left, self.quarters[h])));
+            let translation = difference(c, turned(a, self.quarters[h]));
             // An image that is collapsed is a violation by itself; the other one counts then.
             let residual = if longer > 0.0 { mismatch / longer } else { 0.0 };
-            let allowed = tolerance * longer + ROUNDING * largest(&ends);
+            let allowed = tolerance.seams * longer + ROUNDING * largest(&ends);
             let vertices = self.mesh.ends(h);
             worst = worst.max(residual);
-            if !within(mismatch, allowed) || !within(residual, Tolerance::LARGEST) {
-                let faces = [h, t].map(Manifold::<3>::face);
+            if !(mismatch <= allowed && residual <= Tolerance::LARGEST.seams) {
+                let faces = [h, t].map(|h| (h / 3) as u32);
                 violations.push(Violation::OpenSeam { vertices, faces, residual });
             }
-            let matching = self.quarters(h).rem_euclid(4);
+            let matching = self.quarters[h].rem_euclid(4);
             if matching != 0 || length(translation) > allowed {
                 let translation = translation.map(|x| x / factor);
                 seams.push(Seam { left: h as u32, vertices, matching, translation });

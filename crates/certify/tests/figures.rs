@@ -1,9 +1,7 @@
 //! Figures and verdicts of small results by hand, at both sides of every limit.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-use seamstress_certify::{
-    AlignmentTolerance, Cone, IntegralTolerance, Map, Quads, Tolerance, Violation,
-};
+use seamstress_certify::{Cone, Map, Quads, Tolerance, Violation};
 use seamstress_testkit::{annulus, torus};
 
 /// Two triangles that make a square.
@@ -32,7 +30,7 @@ fn figures_of_a_square_in_two_charts() {
     assert_eq!((figures.faces, figures.seam_edges, figures.cones), (2, 1, 0));
     assert_eq!((figures.index_sum, figures.euler_characteristic), (4.0, 1));
     assert_eq!((figures.seam_residual, figures.overwound_boundary_vertices), (0.0, 0));
-    let figures = map.integers(&RIM, IntegralTolerance::EXACT).unwrap();
+    let figures = map.integers(&RIM, &Tolerance::default()).unwrap();
     assert_eq!((figures.edges, figures.exact_edges, figures.isoline_edges), (1, 1, 4));
     assert_eq!((figures.integral_cones, figures.integral_corners), (0, 4));
     assert_eq!((figures.integral_error, figures.largest_translation), (0.0, 7.0));
@@ -43,8 +41,8 @@ fn figures_of_a_square_in_two_charts() {
 fn only_cones_and_corners_have_to_be_grid_points() {
     let uvs: Vec<_> = square([3.0, 0.0]).iter().map(|[u, v]| [u + 0.5, v + 0.25]).collect();
     let map = Map::new(4, &SQUARE, &uvs).unwrap();
-    assert_eq!(map.integers(&[], IntegralTolerance::EXACT).unwrap().integral_error, 0.0);
-    let found = map.integers(&RIM[..2], IntegralTolerance::EXACT).unwrap_err().0;
+    assert_eq!(map.integers(&[], &Tolerance::default()).unwrap().integral_error, 0.0);
+    let found = map.integers(&RIM[..2], &Tolerance::default()).unwrap_err().0;
     let off = |vertices| Violation::OffIsoline { vertices, face: 0 };
     let corner = Violation::FractionalCorner { vertex: 1, uv: [2.5, 0.25] };
     assert_eq!(found, [off([0, 1]), off([1, 2]), corner]);
@@ -55,7 +53,8 @@ fn translations_that_are_no_integers_are_told_by_their_size() {
     let integers = |by: f64, tolerance: f64| {
         let uvs = square([by, 3.0]);
         let map = Map::new(4, &SQUARE, &uvs).unwrap();
-        map.integers(&[], IntegralTolerance::new(tolerance).unwrap()).map_err(|found| found.0)
+        map.integers(&[], &Tolerance { integers: tolerance, ..Tolerance::default() })
+            .map_err(|found| found.0)
     };
     let (vertices, faces) = ([2, 0], [0, 1]);
     let inexact = Violation::InexactEdge { vertices, faces };
@@ -74,13 +73,29 @@ fn translations_that_are_no_integers_are_told_by_their_size() {
 }
 
 #[test]
+fn a_translation_that_no_double_holds_is_no_integer() {
+    // Seams that fit, of charts so far apart that their distance overflows.
+    let (far, side) = (1.5e308, 2f64.powi(1018));
+    let corner = |x: f64, k: usize| [x + [0.0, side, side, 0.0][k], [0.0, 0.0, side, side][k]];
+    let uvs = [(-far, 0), (-far, 1), (-far, 2), (far, 0), (far, 2), (far, 3)];
+    let uvs = uvs.map(|(x, k)| corner(x, k));
+    let map = Map::new(4, &SQUARE, &uvs).unwrap();
+    assert_eq!(map.seamless(&Tolerance::default()).unwrap().certificate.seam_residual, 0.0);
+    for integers in [0.0, 0.01] {
+        let found = map.integers(&[], &Tolerance { integers, ..Tolerance::default() });
+        let found = found.unwrap_err().0;
+        assert!(matches!(found[..], [Violation::FractionalTranslation { .. }]), "{found:?}");
+    }
+}
+
+#[test]
 fn faces_and_pairs_of_vertices_that_do_not_fit() {
     let repeated = Map::new(4, &[[0, 1, 2], [0, 1, 3]], &square([0.0; 2])).unwrap_err();
     assert_eq!(repeated.0, [Violation::RepeatedEdge { vertices: [0, 1] }]);
     let uvs = square([0.0; 2]);
     let map = Map::new(4, &SQUARE, &uvs).unwrap();
     for vertices in [[0, 4], [4, 0], [1, 3], [2, 2]] {
-        let found = map.alignment(&[vertices], &AlignmentTolerance::default()).unwrap_err();
+        let found = map.alignment(&[vertices], &Tolerance::default()).unwrap_err();
         assert_eq!(found.0, [Violation::NotAnEdge { vertices }]);
     }
 }
@@ -96,7 +111,7 @@ fn angles_around_a_vertex_are_off_by_a_thousandth_at_most() {
     let faces: Vec<_> = (0..40).map(|k| [0, 1 + k, 1 + (k + 1) % 40]).collect();
     let check = |lack: f64| {
         let uvs = laid(lack);
-        Map::new(41, &faces, &uvs).unwrap().seamless(&Tolerance::seams(1e-4).unwrap())
+        Map::new(41, &faces, &uvs).unwrap().seamless(&Tolerance::of_seams(1e-4))
     };
     let found = check(0.8e-3).unwrap();
     assert_eq!(found.cones, [Cone { vertex: 0, index: 4 - 28 }]);
@@ -111,7 +126,7 @@ fn angles_between_aligned_edges_are_off_by_a_thousandth_at_most() {
     let check = |off: f64| {
         let uvs = [[0.0; 2], [1.0, 0.0], [-off.sin(), off.cos()]];
         let map = Map::new(3, &[[0, 1, 2]], &uvs).unwrap();
-        map.alignment(&[[0, 1], [2, 0]], &AlignmentTolerance::axes(1.0).unwrap())
+        map.alignment(&[[0, 1], [2, 0]], &Tolerance { axes: 1.0, ..Tolerance::default() })
     };
     let found = check(0.8e-3).unwrap();
     assert_eq!((found.edges, found.sides, found.exact_sides, found.sectors), (2, 2, 1, 1));

@@ -69,7 +69,7 @@ pub use matching::{MatchingRow, parse_matching, read_matching, write_matching};
 pub use mesh::{PolygonMesh, Polygons};
 pub use note::Note;
 pub use obj::{parse_segments, read_segments};
-pub use read::{parse_mesh, read_mesh, read_mesh_as};
+pub use read::{parse_mesh, read_content, read_mesh, read_mesh_as};
 pub use seamstress_mesh::attributes;
 pub use vertex_values::{parse_vertex_values, read_vertex_values};
 pub use write::Polymesh;

@@ -28,10 +28,19 @@ pub fn read_mesh(path: &Path) -> Result<PolygonMesh, ReadError> {
 /// As [`read_mesh`].
 pub fn read_mesh_as(path: &Path, format: Option<Format>) -> Result<PolygonMesh, ReadError> {
     let name = path.display().to_string();
-    let bytes =
-        fs::read(path).map_err(|error| Fault::whole_file(ReadErrorKind::Io(error)).named(&name))?;
+    let bytes = read_content(path)?;
     let format = format.or_else(|| Format::from_path(path));
     parse(&bytes, format, path.parent()).map_err(|fault| fault.named(&name))
+}
+
+/// Reads the content of a file, unpacked if gzip has compressed it.
+///
+/// # Errors
+/// [`ReadError`] if the file cannot be read.
+pub fn read_content(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let content = fs::read(path).map_err(|error| Fault::whole_file(ReadErrorKind::Io(error)));
+    let unpacked = content.and_then(|bytes| Ok(unpacked(&bytes)?.into_owned()));
+    unpacked.map_err(|fault| fault.named(&path.display().to_string()))
 }
 
 /// Reads a mesh from memory.
@@ -127,6 +136,10 @@ mod tests {
         encoder.read_to_end(&mut packed).unwrap();
         let plain = parse_mesh(OBJ, Some(Format::Obj), "a.obj").unwrap();
         assert_eq!(parse_mesh(&packed, Some(Format::Obj), "a.obj.gz").unwrap(), plain);
+        let file = std::env::temp_dir().join(format!("seamstress-{}.obj.gz", std::process::id()));
+        fs::write(&file, &packed).unwrap();
+        assert_eq!(read_content(&file).unwrap(), OBJ);
+        fs::remove_file(&file).unwrap();
         let torn = parse_mesh(&packed[..packed.len() - 9], None, "a.obj.gz").unwrap_err();
         assert!(torn.to_string().starts_with("a.obj.gz: cannot be read: "), "{torn}");
     }

@@ -73,9 +73,7 @@ pub use layout::objective::{ConicStats, Objective, ObjectiveOptions};
 pub use layout::polish::PolishOptions;
 #[doc(hidden)]
 pub use map::followed;
-pub use map::{
-    Alignment, AlignmentTolerance, SeamlessMap, Tolerance, ToleranceError, Violation, Violations,
-};
+pub use map::{Alignment, SeamlessMap, Tolerance, Violation, Violations};
 pub use method::{
     ComponentStats, FieldMap, FieldMapOptions, MapError, MapOptions, MapSolution, MethodError,
     Purpose, Relayout, RelayoutOptions, RelayoutStats, StageStats, Start, UncertifiedMap,

@@ -1,9 +1,7 @@
 //! Certified integer-grid maps.
 
 use seamstress_mesh::TriMesh;
-use seamstress_parametrize::map::{
-    AlignmentTolerance, IntegerCertificate, IntegralTolerance, SeamlessMap, Tolerance, Violations,
-};
+use seamstress_parametrize::map::{IntegerCertificate, SeamlessMap, Tolerance, Violations};
 
 /// A seamless map whose grid of unit squares closes up over the whole surface.
 ///
@@ -48,8 +46,8 @@ impl IntegerGridMap {
         tolerance: &Tolerance,
     ) -> Result<Self, Violations> {
         let map = SeamlessMap::certify(mesh, corner_uvs, tolerance)?;
-        map.alignment(mesh, aligned, &AlignmentTolerance::default())?;
-        let certificate = map.integers(mesh, aligned, IntegralTolerance::EXACT)?;
+        map.alignment(mesh, aligned, &Tolerance::default())?;
+        let certificate = map.integers(mesh, aligned, &Tolerance::default())?;
         Ok(Self { map, certificate })
     }
 

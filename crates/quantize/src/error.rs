@@ -4,7 +4,7 @@ use crate::gauss::Overflow;
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::{Component, Vertex};
-use seamstress_parametrize::map::Violations;
+use seamstress_parametrize::map::{Violations, first_in_words, in_whole};
 use seamstress_parametrize::progress::Cancelled;
 
 /// Pairs of vertices that a message lists.
@@ -38,10 +38,10 @@ pub enum QuantizeError {
     #[error("{}", components::listed(.0))]
     Components(Vec<FailedComponent<QuantizationFailure>>),
     /// The edges given are not aligned in the map.
-    #[error("the map is not aligned: {0}")]
+    #[error("the map is not aligned: {}", first_in_words(&.0.0))]
     Misaligned(#[source] Violations),
     /// The result did not pass the certificate. Nothing is returned then.
-    #[error("the integer-grid map failed its certificate: {0}")]
+    #[error("the integer-grid map failed its certificate: {}", first_in_words(&.0.0))]
     Uncertified(#[from] Violations),
 }
 
@@ -91,7 +91,7 @@ pub enum QuantizationFailure {
     #[error("no grid gave an acceptable map: {0}; ask for more quads")]
     Refused(#[source] Refusal),
     /// The result fails its certificate.
-    #[error(transparent)]
+    #[error("{}", first_in_words(&.0.0))]
     Uncertified(#[from] Violations),
 }
 
@@ -127,7 +127,7 @@ impl QuantizationFailure {
             Self::Refused(Refusal { reason, faces }) => {
                 Self::Refused(Refusal { reason, faces: faces.into_iter().map(face).collect() })
             }
-            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(face, vertex)),
+            Self::Uncertified(violations) => Self::Uncertified(in_whole(violations, face, vertex)),
             other => other,
         }
     }

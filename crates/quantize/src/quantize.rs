@@ -8,7 +8,7 @@ use crate::stats::QuantizationStats;
 use seamstress_mesh::components::{self, FailedComponent};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Face, Geometry, TriMesh};
-use seamstress_parametrize::map::{AlignmentTolerance, SeamlessMap};
+use seamstress_parametrize::map::{SeamlessMap, Tolerance};
 use seamstress_parametrize::progress::{Observer, Stage, Watch};
 use seamstress_parametrize::quality::{Distortion, distortion};
 
@@ -112,7 +112,7 @@ pub fn quantize_deciding<'a>(
         return Err(QuantizeError::BadSize);
     }
     let pairs = aligned.vertex_pairs(mesh);
-    map.alignment(mesh, &pairs, &AlignmentTolerance::of_seams(&options.given))
+    map.alignment(mesh, &pairs, &Tolerance::of_seams(options.given.seams))
         .map_err(QuantizeError::Misaligned)?;
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };

@@ -4,7 +4,7 @@ use seamstress_mesh::components::FailedComponent;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::soup::TriangleSoup;
 use seamstress_mesh::{Face, TriMesh};
-use seamstress_parametrize::map::{IntegerCertificate, IntegralTolerance};
+use seamstress_parametrize::map::IntegerCertificate;
 use seamstress_parametrize::{MapOptions, SeamlessMap, Tolerance, Violation, make_map};
 use seamstress_quantize::{
     GridSize, IntegerGridMap, Quantization, QuantizationFailure, QuantizeError, QuantizeOptions,
@@ -192,7 +192,7 @@ fn the_certificate_refuses_what_is_not_integral() {
     let soup = testkit::bumpy(&testkit::icosphere(1), 0.05, 1);
     let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
     let good = solution.map.corner_uvs().to_vec();
-    let tolerance = Tolerance::seams(1e-2).unwrap();
+    let tolerance = Tolerance::of_seams(1e-2);
     let refused =
         |uvs: Vec<[f64; 2]>| IntegerGridMap::certify(&mesh, uvs, &tolerance).unwrap_err().0;
     assert!(IntegerGridMap::certify(&mesh, good.clone(), &tolerance).is_ok());
@@ -228,9 +228,9 @@ fn the_certificate_refuses_what_is_not_integral() {
 fn checked(
     mesh: &TriMesh,
     uvs: Vec<[f64; 2]>,
-    tolerance: IntegralTolerance,
+    tolerance: &Tolerance,
 ) -> Result<IntegerCertificate, Vec<Violation>> {
-    let map = SeamlessMap::certify(mesh, uvs, &Tolerance::seams(1e-3).unwrap()).unwrap();
+    let map = SeamlessMap::certify(mesh, uvs, &Tolerance::of_seams(1e-3)).unwrap();
     map.integers(mesh, &[], tolerance).map_err(|violations| violations.0)
 }
 
@@ -239,13 +239,14 @@ fn maps_of_few_digits_are_checked_to_a_tolerance() {
     let soup = testkit::bumpy(&testkit::icosphere(1), 0.05, 1);
     let (mesh, solution) = integer(&soup, GridSize::Quads(200.0));
     let good = solution.map.corner_uvs();
-    let exact = checked(&mesh, good.to_vec(), IntegralTolerance::EXACT).unwrap();
+    let exact = checked(&mesh, good.to_vec(), &Tolerance::default()).unwrap();
     assert_eq!(&exact, solution.map.certificate());
     assert_eq!((exact.exact_edges, exact.integral_error), (exact.edges, 0.0));
 
     let digits = |x: f64| (x * 1e5).round() / 1e5;
     let rounded: Vec<_> = good.iter().map(|[u, v]| [digits(u + 2e-5), digits(*v)]).collect();
-    let with = |x| checked(&mesh, rounded.clone(), IntegralTolerance::new(x).unwrap());
+    let with =
+        |x| checked(&mesh, rounded.clone(), &Tolerance { integers: x, ..Tolerance::default() });
     // Across a half turn both ends count.
     let certificate = with(1e-4).unwrap();
     assert!(certificate.exact_edges < certificate.edges);
@@ -265,9 +266,9 @@ fn a_shifted_seam_is_named_by_its_edges() {
     for corner in &mut uvs[0..3] {
         corner[0] += 0.25;
     }
-    let tolerance = IntegralTolerance::new(0.01).unwrap();
+    let tolerance = &Tolerance { integers: 0.01, ..Tolerance::default() };
     let corners = mesh.face_vertices(Face(0)).map(|v| v.0);
-    for tolerance in [IntegralTolerance::EXACT, tolerance] {
+    for tolerance in [&Tolerance::default(), tolerance] {
         let found = checked(&mesh, uvs.clone(), tolerance).unwrap_err();
         let translations = found.iter().filter_map(|v| match v {
             Violation::FractionalTranslation { vertices, translation, .. } => {

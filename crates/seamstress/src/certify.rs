@@ -6,9 +6,9 @@ use crate::features::FeatureReport;
 use crate::finding::Finding;
 use crate::report::{ConeReport, Distortion, Measurement, SeamReport};
 use crate::surface::Surface;
-use seamstress_parametrize::map::{Certificate, IntegerCertificate, IntegralTolerance};
+use seamstress_parametrize::map::{Certificate, IntegerCertificate, first_in_words};
 use seamstress_parametrize::quality::{SingularValues, measure_all};
-use seamstress_parametrize::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, Violations};
+use seamstress_parametrize::{Alignment, SeamlessMap, Tolerance};
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Surface::certify_with`].
@@ -51,9 +51,9 @@ impl Default for CertifyOptions {
         Self {
             features: Features::none(),
             integer: false,
-            tolerance: Tolerance::default().seam(),
-            alignment_tolerance: AlignmentTolerance::default().axis(),
-            integer_tolerance: IntegralTolerance::EXACT.distance(),
+            tolerance: Tolerance::default().seams,
+            alignment_tolerance: Tolerance::default().axes,
+            integer_tolerance: Tolerance::default().integers,
         }
     }
 }
@@ -77,19 +77,28 @@ impl CertifyOptions {
         self
     }
 
-    pub(crate) fn seam_tolerance(&self) -> Result<Tolerance, Error> {
-        Tolerance::seams(self.tolerance)
-            .map_err(|error| Error::options(format!("tolerance: {error}")))
-    }
-
-    fn axis_tolerance(&self) -> Result<AlignmentTolerance, Error> {
-        AlignmentTolerance::axes(self.alignment_tolerance)
-            .map_err(|error| Error::options(format!("alignment_tolerance: {error}")))
-    }
-
-    fn integral_tolerance(&self) -> Result<IntegralTolerance, Error> {
-        IntegralTolerance::new(self.integer_tolerance)
-            .map_err(|error| Error::options(format!("integer_tolerance: {error}")))
+    /// The tolerances, none of them so large that the check would mean nothing.
+    pub(crate) fn allowed(&self) -> Result<Tolerance, Error> {
+        let within = |name: &str, what: &str, given: f64, largest: f64| {
+            if (0.0..=largest).contains(&given) {
+                return Ok(given);
+            }
+            let text =
+                format!("{name}: a tolerance of {given} {what}: it must be from 0 to {largest}");
+            Err(Error::options(text))
+        };
+        let most = Tolerance::LARGEST;
+        let (seams, axes) = ("edge lengths for seams", "degrees for aligned edges");
+        Ok(Tolerance {
+            seams: within("tolerance", seams, self.tolerance, most.seams)?,
+            axes: within("alignment_tolerance", axes, self.alignment_tolerance, most.axes)?,
+            integers: within(
+                "integer_tolerance",
+                "grid units for integers",
+                self.integer_tolerance,
+                most.integers,
+            )?,
+        })
     }
 }
 
@@ -183,8 +192,7 @@ impl Surface {
         face_uvs: &[[u32; 3]],
         options: &CertifyOptions,
     ) -> Result<Verdict, Error> {
-        let (tolerance, axis_tolerance) = (options.seam_tolerance()?, options.axis_tolerance()?);
-        let integral_tolerance = options.integral_tolerance()?;
+        let tolerance = options.allowed()?;
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let features = match options.features.is_none() {
             true => None,
@@ -219,14 +227,14 @@ impl Surface {
         verdict.seams = Some(SeamReport::new(map.seams()));
         let aligned = features.as_ref().map_or(Vec::new(), |features| features.edges().to_vec());
         if features.is_some() {
-            match map.alignment(self.mesh(), &aligned, &axis_tolerance) {
+            match map.alignment(self.mesh(), &aligned, &tolerance) {
                 Ok(alignment) => verdict.alignment = Some(alignment),
                 Err(violations) => verdict.alignment_violations = self.findings(&violations),
             }
             verdict.aligned = Some(verdict.alignment.is_some());
         }
         if options.integer {
-            match map.integers(self.mesh(), &aligned, integral_tolerance) {
+            match map.integers(self.mesh(), &aligned, &tolerance) {
                 Ok(certificate) => verdict.integer_certificate = Some(certificate),
                 Err(violations) => verdict.integer_violations = self.findings(&violations),
             }
@@ -245,12 +253,12 @@ impl Surface {
         face_uvs: &[[u32; 3]],
         options: &CertifyOptions,
     ) -> Result<Measurements, Error> {
-        let tolerance = options.seam_tolerance()?;
+        let tolerance = options.allowed()?;
         let corner_uvs = self.corner_uvs(uvs, face_uvs)?;
         let singular = SingularValues::new(self.mesh(), self.metric(), &corner_uvs);
         let fault = SeamlessMap::certify(self.mesh(), corner_uvs, &tolerance)
             .err()
-            .map(|violations: Violations| violations.to_string());
+            .map(|violations| first_in_words(&violations.0));
         Ok(Measurements {
             flipped: singular.flipped(),
             degenerate: singular.degenerate(),
@@ -266,7 +274,7 @@ impl Surface {
         corner_uvs: Vec<[f64; 2]>,
         options: &CertifyOptions,
     ) -> Result<SeamlessMap, Error> {
-        SeamlessMap::certify(self.mesh(), corner_uvs, &options.seam_tolerance()?)
+        SeamlessMap::certify(self.mesh(), corner_uvs, &options.allowed()?)
             .map_err(|violations| self.not_a_map(&violations).at_stage(Some(Stage::Certificate)))
     }
 }

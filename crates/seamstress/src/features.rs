@@ -8,7 +8,7 @@ use crate::surface::Surface;
 use seamstress_mesh::features::{EdgeSet, FeatureGraph, NodeKind};
 use seamstress_mesh::{TriMesh, Vertex};
 use seamstress_parametrize::{
-    Alignment, AlignmentTolerance, ReleaseReason, ReleasedFeature, SeamlessMap, Violations,
+    Alignment, ReleaseReason, ReleasedFeature, SeamlessMap, Tolerance, Violations,
 };
 use seamstress_quads::Extraction;
 use serde::Serialize;
@@ -245,7 +245,7 @@ impl AlignedFeatures {
         asked: FeatureCurves,
         map: &SeamlessMap,
         dropped: &[ReleasedFeature],
-        tolerance: &AlignmentTolerance,
+        tolerance: &Tolerance,
     ) -> Result<Self, Violations> {
         let gone: BTreeSet<[u32; 2]> = dropped.iter().map(|f| ordered(f.vertices)).collect();
         let is_kept = |pair: &[u32; 2]| !gone.contains(&ordered(*pair));
@@ -267,7 +267,7 @@ impl AlignedFeatures {
         mesh: &TriMesh,
         map: &SeamlessMap,
     ) -> Result<Self, Violations> {
-        let tolerance = AlignmentTolerance::default();
+        let tolerance = Tolerance::default();
         self.report.alignment = Some(map.alignment(mesh, &self.kept, &tolerance)?);
         Ok(self)
     }

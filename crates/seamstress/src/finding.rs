@@ -2,6 +2,7 @@
 
 use seamstress_mesh::soup::{Fault, Severity as FaultSeverity};
 use seamstress_parametrize::Violation;
+use seamstress_parametrize::map::in_words;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt;
@@ -112,7 +113,7 @@ impl From<&Fault> for Finding {
 
 impl From<&Violation> for Finding {
     fn from(violation: &Violation) -> Self {
-        Self::new(Severity::Error, violation.to_string(), violation)
+        Self::new(Severity::Error, in_words(violation), violation)
     }
 }
 

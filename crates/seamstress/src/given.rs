@@ -6,8 +6,9 @@ use crate::finding::Finding;
 use crate::inspection::Inspection;
 use crate::surface::Surface;
 use crate::surface_options::SurfaceOptions;
-use seamstress_io::PolygonMesh;
-use seamstress_parametrize::map::compare_source;
+use seamstress_certify::{Obj, compare_source};
+use seamstress_io::{Format, PolygonMesh, read_content};
+use seamstress_parametrize::map::{first_in_words, in_words};
 use seamstress_parametrize::{Violation, Violations};
 use std::path::Path;
 
@@ -15,10 +16,8 @@ use std::path::Path;
 #[derive(Debug, Clone)]
 pub struct MapFile {
     input: String,
-    positions: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
-    uvs: Vec<[f64; 2]>,
-    face_uvs: Vec<[u32; 3]>,
+    /// Of an OBJ file what the checker itself reads.
+    map: Obj<3>,
     mesh: PolygonMesh,
 }
 
@@ -58,18 +57,24 @@ impl MapFile {
         mesh.attributes.all.retain(|attribute| *attribute != corners);
         let face_uvs = corners.rows.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
         let uvs = corners.values.chunks_exact(2).map(|uv| [uv[0], uv[1]]).collect();
-        let positions = mesh.positions.clone();
-        Ok(Self { input, positions, faces, uvs, face_uvs, mesh })
+        let map = match mesh.format {
+            Format::Obj => match Obj::read(&String::from_utf8_lossy(&read_content(path)?)) {
+                Ok(map) => map,
+                Err(line) => return bad(&format!("not a map: line {line} is not as in a map")),
+            },
+            _ => Obj { positions: mesh.positions.clone(), uvs, faces, face_uvs },
+        };
+        Ok(Self { input, map, mesh })
     }
 
     /// The UVs.
     pub fn uvs(&self) -> &[[f64; 2]] {
-        &self.uvs
+        &self.map.uvs
     }
 
     /// For each face the UVs of its corners.
     pub fn face_uvs(&self) -> &[[u32; 3]] {
-        &self.face_uvs
+        &self.map.face_uvs
     }
 
     /// The mesh that it is of, as it stands in the file.
@@ -89,7 +94,9 @@ impl MapFile {
     pub fn require_faces_of(&self, surface: &Surface) -> Result<(), Error> {
         let moved = |fault: &Violation| matches!(fault, Violation::MovedVertex { .. });
         match self.compare(surface).into_iter().find(|fault| !moved(fault)) {
-            Some(fault) => Err(self.refused(&format!("not a map of the mesh: {fault}"))),
+            Some(fault) => {
+                Err(self.refused(&format!("not a map of the mesh: {}", in_words(&fault))))
+            }
             None => Ok(()),
         }
     }
@@ -103,14 +110,14 @@ impl MapFile {
         match differences.is_empty() {
             true => Ok(()),
             false => Err(self
-                .refused(&format!("not a map of the mesh: {}", Violations(differences.clone())))
+                .refused(&format!("not a map of the mesh: {}", first_in_words(&differences)))
                 .with_findings(surface.findings(&Violations(differences)))),
         }
     }
 
     fn compare(&self, surface: &Surface) -> Vec<Violation> {
         let source = (surface.positions(), surface.faces());
-        compare_source(source, (&self.positions, &self.faces))
+        compare_source(source, (&self.map.positions, &self.map.faces))
     }
 
     fn refused(&self, text: &str) -> Error {

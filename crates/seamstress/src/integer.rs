@@ -17,7 +17,7 @@ use crate::sizes::SizeReport;
 use crate::surface::Surface;
 use crate::words::{counted, rounded};
 use seamstress_parametrize::map::{Certificate, IntegerCertificate};
-use seamstress_parametrize::{self as method, AlignmentTolerance, Tolerance};
+use seamstress_parametrize::{self as method, Tolerance};
 use seamstress_quads::GoesOn;
 use seamstress_quantize::{
     Decisions, Quantization, QuantizationFailure, QuantizationStats, QuantizeError,
@@ -208,7 +208,7 @@ impl Surface {
                 let (surface, curves) = (&selection.surface, selection.curves.clone());
                 let map = surface.seamless_map(selection.corner_uvs(&corner_uvs), certify)?;
                 let is_asked = !options.map.features.is_none();
-                let tolerance = certify.seam_tolerance()?;
+                let tolerance = certify.allowed()?;
                 let followed = || surface.followed(&map, curves, &tolerance);
                 let features = is_asked.then(followed).transpose()?;
                 let start = SeamlessStart { map, features, tolerance };
@@ -262,7 +262,7 @@ impl Surface {
         asked: FeatureCurves,
         tolerance: &Tolerance,
     ) -> Result<AlignedFeatures, Error> {
-        let tolerance = AlignmentTolerance::of_seams(tolerance);
+        let tolerance = Tolerance::of_seams(tolerance.seams);
         let (_, dropped) = method::followed(self.mesh(), map, &asked.edges, &tolerance)
             .map_err(|violations| self.not_a_map(&violations))?;
         AlignedFeatures::certify(self.mesh(), asked, map, &dropped, &tolerance)

@@ -17,8 +17,7 @@ use seamstress_mesh::attributes::{Attribute, AttributeDomain, AttributeKind};
 use seamstress_parametrize::atlas::Atlas;
 use seamstress_parametrize::map::{Certificate, Cone, SeamEdge};
 use seamstress_parametrize::{
-    self as method, AlignmentTolerance, ComponentStats, MapError, ReleasedFeature, Tolerance,
-    make_aligned_map,
+    self as method, ComponentStats, MapError, ReleasedFeature, Tolerance, make_aligned_map,
 };
 use serde::Serialize;
 #[cfg(any(feature = "page", feature = "render"))]
@@ -423,7 +422,7 @@ impl Surface {
         map: &method::SeamlessMap,
         dropped: &[ReleasedFeature],
     ) -> Result<AlignedFeatures, Error> {
-        let tolerance = AlignmentTolerance::default();
+        let tolerance = Tolerance::default();
         AlignedFeatures::certify(self.mesh(), asked, map, dropped, &tolerance)
             .map_err(|violations| self.misaligned(&violations))
     }

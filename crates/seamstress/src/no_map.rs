@@ -5,6 +5,7 @@ use crate::finding::{Elements, listing};
 use crate::surface::Surface;
 use crate::words::counted;
 use seamstress_mesh::Vertex;
+use seamstress_parametrize::map::first_in_words;
 use seamstress_parametrize::{MapError, MethodError, ReleasedFeature, Violation, Violations};
 use std::collections::BTreeMap;
 
@@ -79,7 +80,8 @@ impl Surface {
 
     /// A fault of this program.
     pub(crate) fn misaligned(&self, violations: &Violations) -> Error {
-        let text = format!("a map was made, but its features are not aligned: {violations}");
+        let first = first_in_words(&violations.0);
+        let text = format!("a map was made, but its features are not aligned: {first}");
         Error::new(ErrorKind::Internal, text)
             .with_findings(self.findings(violations))
             .with_hint("please report this with the mesh")

@@ -125,7 +125,7 @@ impl OptimizeOptions {
     fn to_method(&self, surface: &Surface) -> Result<RelayoutOptions, Error> {
         self.validate_bound()?;
         let mut options = RelayoutOptions::new(self.objective);
-        options.tolerance = self.certify().seam_tolerance()?;
+        options.tolerance = self.certify().allowed()?;
         options.settings.dilatation_bound = self.bound;
         options.strict_features = self.features_strict;
         options.settings.conic.solver = match self.solver {

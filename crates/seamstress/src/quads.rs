@@ -23,6 +23,7 @@ use seamstress_certify::Quads;
 use seamstress_mesh::components::{Component, components};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Face, Halfedge};
+use seamstress_parametrize::map::first_in_words;
 use seamstress_parametrize::progress::go_on;
 use seamstress_quads::extract::SurfacePoint;
 use seamstress_quads::quality::Orientation;
@@ -449,8 +450,8 @@ impl Surface {
             None => Ok(()),
         });
         certified.map_err(|violations| {
-            let text =
-                format!("quads were made, but they are not those of the surface: {violations}");
+            let first = first_in_words(&violations.0);
+            let text = format!("quads were made, but they are not those of the surface: {first}");
             Error::new(ErrorKind::Internal, text).with_hint("please report this with the mesh")
         })
     }

@@ -3,10 +3,7 @@
 
 pub mod mutations;
 
-use seamstress_certify::{
-    AlignmentTolerance, IntegralTolerance, Map, Quads, Tolerance, Violation, Violations,
-    compare_source,
-};
+use seamstress_certify::{Map, Quads, Tolerance, Violation, Violations, compare_source};
 use seamstress_testkit::Rng;
 use seamstress_testkit::{IntegerMap, disjoint_union, squares};
 use seamstress_testkit::{cube, double_torus, l_bracket, random_voxels, slab_with_holes};
@@ -85,8 +82,8 @@ impl Case {
     fn of_map(&self) -> Result<(), Violations> {
         let map = self.map()?;
         map.seamless(&Tolerance::default())?;
-        let aligned = map.alignment(&self.aligned, &AlignmentTolerance::default()).err();
-        let integral = map.integers(&self.aligned, IntegralTolerance::EXACT).err();
+        let aligned = map.alignment(&self.aligned, &Tolerance::default()).err();
+        let integral = map.integers(&self.aligned, &Tolerance::default()).err();
         let found: Vec<_> = aligned.into_iter().chain(integral).flat_map(|v| v.0).collect();
         if found.is_empty() { Ok(()) } else { Err(Violations(found)) }
     }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "helpers of tests")]
 
 use seamstress_certify::{
-    Alignment, AlignmentTolerance, Certificate, Cone, Map, Seam, Seamless, Tolerance, Violations,
+    Alignment, Certificate, Cone, Map, Seam, Seamless, Tolerance, Violations,
 };
 use seamstress_mesh::TriMesh;
 use seamstress_mesh::soup::TriangleSoup;
@@ -27,7 +27,7 @@ impl SeamlessMap {
         &self,
         mesh: &TriMesh,
         edges: &[[u32; 2]],
-        tolerance: &AlignmentTolerance,
+        tolerance: &Tolerance,
     ) -> Result<Alignment, Violations> {
         Map::new(mesh.n_vertices(), &faces(mesh), &self.uvs)?.alignment(edges, tolerance)
     }

@@ -1,8 +1,7 @@
 //! Certified maps.
 
 use seamstress_certify::{
-    Alignment, AlignmentTolerance, Certificate, Cone, IntegerCertificate, IntegralTolerance, Map,
-    Seam, Seamless, Tolerance, Violations,
+    Alignment, Certificate, Cone, IntegerCertificate, Map, Seam, Seamless, Tolerance, Violations,
 };
 use seamstress_mesh::{Halfedge, TriMesh};
 
@@ -22,7 +21,7 @@ pub struct SeamEdge {
 }
 
 impl From<Seam> for SeamEdge {
-    fn from(Seam { left, vertices, matching, translation, .. }: Seam) -> Self {
+    fn from(Seam { left, vertices, matching, translation }: Seam) -> Self {
         Self { left: Halfedge(left), vertices, matching, translation }
     }
 }
@@ -64,12 +63,12 @@ impl SeamlessMap {
     ) -> Result<(Self, Alignment), Violations> {
         let map = checked(mesh, &corner_uvs)?;
         let found = map.seamless(tolerance)?;
-        let alignment = map.alignment(edges, &AlignmentTolerance::default())?;
+        let alignment = map.alignment(edges, &Tolerance::default())?;
         Ok((Self::found(corner_uvs, found), alignment))
     }
 
     fn found(corner_uvs: Vec<[f64; 2]>, found: Seamless) -> Self {
-        let Seamless { cones, seams, certificate, .. } = found;
+        let Seamless { cones, seams, certificate } = found;
         let seams = seams.into_iter().map(SeamEdge::from).collect();
         Self { corner_uvs, cones, seams, certificate }
     }
@@ -83,7 +82,7 @@ impl SeamlessMap {
         &self,
         mesh: &TriMesh,
         edges: &[[u32; 2]],
-        tolerance: &AlignmentTolerance,
+        tolerance: &Tolerance,
     ) -> Result<Alignment, Violations> {
         checked(mesh, &self.corner_uvs)?.alignment(edges, tolerance)
     }
@@ -97,7 +96,7 @@ impl SeamlessMap {
         &self,
         mesh: &TriMesh,
         aligned: &[[u32; 2]],
-        tolerance: IntegralTolerance,
+        tolerance: &Tolerance,
     ) -> Result<IntegerCertificate, Violations> {
         checked(mesh, &self.corner_uvs)?.integers(aligned, tolerance)
     }

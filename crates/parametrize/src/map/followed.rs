@@ -2,7 +2,7 @@
 
 use super::certificate::SeamlessMap;
 use crate::features::{ReleaseReason, ReleasedFeature, released};
-use seamstress_certify::{AlignmentTolerance, Violation, Violations};
+use seamstress_certify::{Tolerance, Violation, Violations};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Halfedge, TriMesh, Vertex};
 
@@ -15,7 +15,7 @@ pub fn followed(
     mesh: &TriMesh,
     map: &SeamlessMap,
     features: &EdgeSet,
-    tolerance: &AlignmentTolerance,
+    tolerance: &Tolerance,
 ) -> Result<(EdgeSet, Vec<ReleasedFeature>), Violations> {
     let pairs = features.vertex_pairs(mesh);
     let found = map.alignment(mesh, &pairs, tolerance).err().map_or(Vec::new(), |found| found.0);

@@ -2,10 +2,12 @@
 
 mod certificate;
 mod followed;
+mod words;
 
 pub use certificate::{SeamEdge, SeamlessMap};
 pub use followed::followed;
 pub use seamstress_certify::{
-    Alignment, AlignmentTolerance, Certificate, Cone, IntegerCertificate, IntegralTolerance, Map,
-    Tolerance, ToleranceError, Violation, Violations, compare_source,
+    Alignment, Certificate, Cone, IntegerCertificate, Map, Tolerance, Violation, Violations,
+    compare_source,
 };
+pub use words::{first_in_words, in_whole, in_words};

@@ -6,7 +6,7 @@ use crate::field::{FieldError, PrescriptionError};
 use crate::layout::disk::DiskError;
 use crate::layout::exact::Defects;
 use crate::layout::objective::OptimizeError;
-use crate::map::Violations;
+use crate::map::{Violations, first_in_words, in_whole};
 use crate::progress::{Cancelled, MaybeCancelled, SolveError};
 use seamstress_linalg::NotPositiveDefinite;
 use seamstress_mesh::components::{self, FailedComponent};
@@ -24,7 +24,7 @@ pub enum MethodError {
     #[error("no route gave a layout without defects; the last one left {0}")]
     Defective(Defects),
     /// The layout stood, but its UVs did not pass the certificate.
-    #[error("the component's map failed its certificate: {0}")]
+    #[error("the component's map failed its certificate: {}", first_in_words(&.0.0))]
     Uncertified(#[source] Violations),
     /// The cones prescribed cannot be had beside free ones.
     #[error(transparent)]
@@ -80,7 +80,7 @@ impl MethodError {
                 let (flips, wrong_angles) = (Vec::from_iter(flips), Vec::from_iter(wrong));
                 Self::Defective(Defects { flips, wrong_angles })
             }
-            Self::Uncertified(violations) => Self::Uncertified(violations.in_whole(face, vertex)),
+            Self::Uncertified(violations) => Self::Uncertified(in_whole(violations, face, vertex)),
             Self::Cones(PrescriptionError::NoTaker { vertex: at }) => {
                 Self::Cones(PrescriptionError::NoTaker { vertex: vertex(at) })
             }
@@ -130,7 +130,7 @@ pub enum MapError {
         released: Vec<ReleasedFeature>,
     },
     /// The result did not pass the certificate. Nothing is returned then.
-    #[error("the map failed its certificate: {0}")]
+    #[error("the map failed its certificate: {}", first_in_words(&.0.0))]
     Uncertified(#[from] Violations),
 }
 

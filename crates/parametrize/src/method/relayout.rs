@@ -13,7 +13,7 @@ use crate::layout::newton::NewtonOptions;
 use crate::layout::objective::{
     ConicStats, Ending, Objective, ObjectiveOptions, OptimizeError, Optimized, optimize,
 };
-use crate::map::{Alignment, AlignmentTolerance, SeamlessMap, Tolerance, followed};
+use crate::map::{Alignment, SeamlessMap, Tolerance, followed};
 use crate::progress::{Observer, Stage, Watch};
 use crate::quality::{Distortion, distortion};
 use seamstress_mesh::features::EdgeSet;
@@ -157,7 +157,7 @@ fn run(
         let metric = Metric::from_positions(&piece.mesh, &here);
         let map = start(piece, &metric, watch)?;
         let (kept, released) =
-            followed(&piece.mesh, &map, &asked.restrict(piece), &AlignmentTolerance::default())
+            followed(&piece.mesh, &map, &asked.restrict(piece), &Tolerance::default())
                 .map_err(MethodError::Uncertified)?;
         outcome.add(piece, &kept, &released);
         improve(piece, &metric, &map, &kept, options, watch)
