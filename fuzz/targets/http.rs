@@ -43,7 +43,8 @@ fuzz_target!(|data: &[u8]| {
         }
     }
     let answer = ask(&request);
-    assert!(answer.is_empty() || answer.starts_with(b"HTTP/1."));
+    // To a header that is none it answers in the version of the request.
+    assert!(answer.is_empty() || answer.starts_with(b"HTTP/"));
     let alive = ask(format!("GET /{token}/alive HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes());
     assert!(alive.starts_with(b"HTTP/1.1 200"));
 });

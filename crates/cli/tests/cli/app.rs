@@ -28,13 +28,16 @@ impl App {
 
     /// The status and the content of an answer.
     fn ask(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, String) {
-        let mut stream = TcpStream::connect(&self.host).unwrap();
         let length = body.len();
-        write!(
-            stream,
+        self.send(&format!(
             "{method} {path} HTTP/1.1\r\n{headers}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
-        )
-        .unwrap();
+        ))
+    }
+
+    /// The answer to what stands on the wire.
+    fn send(&self, request: &str) -> (u16, String) {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
         let status = answer.split(' ').nth(1).unwrap().parse().unwrap();
@@ -94,6 +97,18 @@ fn only_pages_of_the_program_are_answered() {
     let task = "%7B%22make%22%3A%7B%22check%22%3A%5B%22pairs%3A%2Fetc%2Fpasswd%22%5D%7D%7D";
     let (status, text) = app.own("POST", &format!("jobs?task={task}"), "v 0 0 0");
     assert!(status == 400 && text.contains("cannot come from a file here"), "{text}");
+}
+
+/// Found by the fuzz target `http`: such an answer has the version of the request.
+#[test]
+fn a_header_that_is_none_is_a_bad_request_in_any_version() {
+    let folder = Folder::new();
+    let app = App::start(&folder, &[]);
+    for version in ["1.0", "1.1", "2.0"] {
+        let request = format!("GET /{}/alive HTTP/{version}\r\nno header\r\n\r\n", app.token);
+        assert_eq!(app.send(&request).0, 400, "{version}");
+        assert_eq!(app.own("GET", "alive", "").0, 200);
+    }
 }
 
 #[test]
