@@ -190,7 +190,7 @@ mod tests {
         let of_cone = "the cone at vertex 8 lies at (0.5, -3), which is not a grid point";
         assert_eq!(in_words(&cone), of_cone);
         assert_eq!(first_in_words(&[]), "no violation");
-        assert_eq!(first_in_words(&[cone.clone()]), of_cone);
+        assert_eq!(first_in_words(std::slice::from_ref(&cone)), of_cone);
         let all = [seam, cone.clone(), cone];
         assert_eq!(first_in_words(&all), format!("{text} (and 2 more violations)"));
     }
