@@ -65,6 +65,27 @@ fn a_cylinder_keeps_its_rims_alone() {
 }
 
 #[test]
+fn slivers_along_a_rim_do_not_break_it() {
+    // At every other edge of the upper rim the lid has a sliver, folded down.
+    let n = 24;
+    let mut drum = drum(n, 1);
+    let middle = drum.positions.len() as u32 - 1;
+    for a in (n..2 * n).step_by(2) {
+        let b = a + 1;
+        let tip = drum.positions.len() as u32;
+        let [p, q] = [a, b].map(|v| drum.positions[v as usize]);
+        drum.positions.push([0.495 * (p[0] + q[0]), 0.495 * (p[1] + q[1]), p[2] - 0.01]);
+        let lid = drum.faces.iter_mut().find(|face| **face == [middle, a, b]).unwrap();
+        *lid = [middle, a, tip];
+        drum.faces.extend([[middle, tip, b], [a, b, tip]]);
+    }
+    // On the coarsest of these grids an edge of the rim, between two slivers, is shorter than half a cell.
+    for cells in [52.0, 200.0, 1000.0] {
+        assert_eq!(found(&drum, cells).1.len(), 2 * n as usize, "{cells} cells");
+    }
+}
+
+#[test]
 fn round_shapes_have_none() {
     for n in 1..5 {
         assert_eq!(count(&icosphere(n)), 0, "icosphere {n}");

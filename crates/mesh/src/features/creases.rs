@@ -96,6 +96,8 @@ pub fn creases(mesh: &TriMesh, positions: &[[f64; 3]], metric: &Metric, cell: f6
     let shape = Shape::new(mesh, positions, metric);
     let found = shape.clear_chains();
     let found = shape.through_gaps(&found);
+    // Both ends of a sliver along a crease are crossings until one of its sides is gone.
+    let found = shape.without_strips(found, cell);
     let found = shape.without_short_ends(found, cell);
     let found = shape.without_specks(&found, cell);
     let found = shape.without_details(found, cell);
