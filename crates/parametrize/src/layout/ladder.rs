@@ -34,9 +34,9 @@ pub enum LayoutEffort {
 }
 
 /// Lays out matched seams exactly: the isometric layout if there is no seam; else the one that follows the frames given,
-/// untangled if triangles are flipped; else that of the barrier homotopy. The first without flips and wrong angles
-/// holds; if there is none, the defects of the last. (No flip alone is not enough: a vertex may be wound once too
-/// often.)
+/// untangled if triangles are flipped; else that of the barrier homotopy, whose few flipped triangles are pulled open as well.
+/// The first without flips and wrong angles holds; if there is none, the defects of the last. (No flip alone is not enough: a
+/// vertex may be wound once too often.)
 ///
 /// # Errors
 /// [`SolveError`].
@@ -83,9 +83,17 @@ pub fn lay_out(
     }
     watch.pulse()?;
     let closed = barrier(sectors, metric, matched, watch)?;
-    let y = space.project(sectors.mesh(), cut, &closed.z)?;
-    match space.defects(sectors, &y) {
-        defects if defects.none() => held(space, y, Route::Barrier, steps + closed.steps),
-        defects => Ok(Err(defects)),
+    let mut y = space.project(sectors.mesh(), cut, &closed.z)?;
+    steps += closed.steps;
+    let mut defects = space.defects(sectors, &y);
+    if !defects.flips.is_empty() {
+        // Few are, if any, and the others lie well.
+        let (pulled, more) = untangle(&mut space, y, watch)?;
+        (y, steps) = (pulled, steps + more);
+        defects = space.defects(sectors, &y);
+    }
+    match defects.none() {
+        true => held(space, y, Route::Barrier, steps),
+        false => Ok(Err(defects)),
     }
 }
