@@ -35,11 +35,9 @@ pub(super) fn map_component(
     let rounding = RoundingOptions { cone_bias: 0.0, ..options.rounding };
     let options = MapOptions { rounding, ..*options };
     domain.guide = None;
+    let domain = domain.releasing_fewer_than(map.released.len());
     let other = map_domain(domain, start, &options, watch);
-    match unless_cancelled(other)? {
-        Ok(other) if other.released.len() < map.released.len() => Ok(other),
-        _ => Ok(map),
-    }
+    Ok(unless_cancelled(other)?.unwrap_or(map))
 }
 
 /// Maps a domain along its features and its guide; where that fails, or features are lost, without the guide, then with

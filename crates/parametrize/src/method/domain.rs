@@ -35,6 +35,8 @@ pub(super) struct Domain<'m> {
     pub(super) lengthening: f64,
     /// Features that are not aligned.
     pub(super) released: Vec<ReleasedFeature>,
+    /// With so many features released, or more, a map is of no use.
+    fewest_unwanted: usize,
     /// Directions to follow.
     pub(super) guide: Option<Guide>,
     /// Largest index of a cone, quarters.
@@ -69,6 +71,7 @@ impl<'m> Domain<'m> {
             guide,
             lengthening: 0.0,
             released,
+            fewest_unwanted: usize::MAX,
             largest_index,
             corners,
             rounds: 0,
@@ -100,6 +103,11 @@ impl<'m> Domain<'m> {
         corner_uvs(self.mesh(), self.surface, &layout.space, &layout.y)
     }
 
+    /// The same where a map that releases so many features or more is of no use.
+    pub(super) fn releasing_fewer_than(self, fewest_unwanted: usize) -> Self {
+        Self { fewest_unwanted, ..self }
+    }
+
     /// What to try where this domain has no map: the same without a guide, then with nothing aligned, then in metrics in
     /// which thin triangles open up, more and more.
     pub(super) fn simpler(&self) -> Option<Self> {
@@ -108,7 +116,8 @@ impl<'m> Domain<'m> {
         }
         if self.any_aligned() {
             let everywhere = VertexData::filled(self.mesh().n_vertices(), true);
-            return Some(self.without_features_near(everywhere, 0));
+            let free = self.without_features_near(everywhere, 0);
+            return free.is_wanted().then_some(free);
         }
         let lengthenings = SLACKS.map(|slack| self.surface.lengthening(self.mesh(), slack));
         let lengthening = lengthenings.into_iter().find(|&by| by > self.lengthening)?;
@@ -116,13 +125,17 @@ impl<'m> Domain<'m> {
         Some(Self { metric, lengthening, ..self.clone() })
     }
 
-    /// The same with the features dropped near defects; none if nothing is left to align then, or if that was
-    /// tried often enough.
+    /// The same with the features dropped near defects; none if nothing is left to align then, if too many are released,
+    /// or if that was tried often enough.
     pub(super) fn without_features_at(&self, defects: &Defects) -> Option<Self> {
         let near = defects.vertices(self.mesh());
         let may_drop = self.any_aligned() && self.rounds < DROP_ROUNDS;
         let fewer = may_drop.then(|| self.without_features_near(near, self.rounds))?;
-        fewer.any_aligned().then_some(fewer)
+        (fewer.any_aligned() && fewer.is_wanted()).then_some(fewer)
+    }
+
+    fn is_wanted(&self) -> bool {
+        self.released.len() < self.fewest_unwanted
     }
 
     fn without_features_near(&self, near: VertexData<bool>, rings: usize) -> Self {
