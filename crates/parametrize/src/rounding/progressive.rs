@@ -17,9 +17,10 @@ const FIRST_THRESHOLD: f64 = 0.05;
 const LAST_THRESHOLD: f64 = 1.0;
 /// Costs closer than this are the same.
 const SAME_COST: f64 = 1e-9;
-/// A new layout is worth its time once this part of the edges that were open at the last one was rounded, and this part of
-/// all.
+/// A new layout is worth its time once this part of the edges that were open at the last one was rounded (a larger one towards
+/// a guide, which tells most of what it would), and this part of all.
 const OPEN_SHARE: f64 = 0.05;
+const GUIDED_OPEN_SHARE: f64 = 0.3;
 const LEAST_SHARE: f64 = 0.0025;
 /// Layout iterations before the first round towards a guide, which is far away.
 const GUIDED_ITERATIONS: usize = 8;
@@ -71,6 +72,7 @@ pub(super) fn round_progressively(
         }
         faces = relaxation.into_faces();
     }
+    let open_share = if guide.is_some() { GUIDED_OPEN_SHARE } else { OPEN_SHARE };
     let mut relaxation: Option<Relaxation> = None;
     let mut open: Vec<u32> = (0..rotation.len() as u32).collect();
     let total = open.len().max(1) as f64;
@@ -110,7 +112,7 @@ pub(super) fn round_progressively(
         }
         open.retain(|&edge| known[edge as usize].is_none());
         since_layout += chosen.len();
-        let worth = (LEAST_SHARE * total).max(OPEN_SHARE * (open.len() + since_layout) as f64);
+        let worth = (LEAST_SHARE * total).max(open_share * (open.len() + since_layout) as f64);
         let is_enough = decides || since_layout as f64 >= worth;
         if !is_enough && !open.is_empty() {
             continue;
