@@ -48,6 +48,53 @@ fn only_cones_and_corners_have_to_be_grid_points() {
     assert_eq!(found, [off([0, 1]), off([1, 2]), corner]);
 }
 
+/// Triangles around the vertex 0, which lies at a point, in one chart; the others at quarters of a turn around it.
+fn fan(quarters: u32, [u, v]: [f64; 2]) -> (Vec<[u32; 3]>, Vec<[f64; 2]>) {
+    let arm = |k: u32| [[2.0, 0.0], [0.0, 2.0], [-2.0, 0.0], [0.0, -2.0]][k as usize % 4];
+    let at = |k| [u + arm(k)[0], v + arm(k)[1]];
+    let faces = (0..quarters).map(|k| [0, 1 + k, 1 + (k + 1) % quarters]).collect();
+    (faces, (0..quarters).flat_map(|k| [[u, v], at(k), at(k + 1)]).collect())
+}
+
+#[test]
+fn a_cone_is_a_grid_point_and_a_regular_vertex_need_not_be() {
+    let check = |quarters, at, aligned: &[[u32; 2]]| {
+        let (faces, uvs) = fan(quarters, at);
+        let map = Map::new(1 + quarters as usize, &faces, &uvs).unwrap();
+        map.integers(aligned, &Tolerance::default()).map_err(|found| found.0)
+    };
+    assert_eq!(check(4, [0.5, 0.25], &[]).unwrap().integral_cones, 0);
+    assert_eq!(check(3, [1.0, -2.0], &[]).unwrap().integral_cones, 1);
+    let cone = Violation::FractionalCone { vertex: 0, uv: [0.5, 0.0] };
+    assert!(check(3, [0.5, 0.0], &[]).unwrap_err().contains(&cone));
+    // Where one aligned edge ends on its isoline, nothing turns; where two meet at a right angle, something does.
+    assert_eq!(check(4, [0.5, 1.0], &[[0, 1]]).unwrap().integral_corners, 0);
+    let corner = Violation::FractionalCorner { vertex: 0, uv: [0.5, 1.0] };
+    assert!(check(4, [0.5, 1.0], &[[0, 1], [0, 2]]).unwrap_err().contains(&corner));
+    assert_eq!(check(4, [0.0, 1.0], &[[0, 1], [0, 2]]).unwrap().integral_corners, 1);
+}
+
+#[test]
+fn what_rounding_takes_of_a_translation_counts() {
+    let [a, b, c] = [[1e-30, 0.0], [2.0, 0.0], [2.0, 2.0]];
+    let uvs = [a, b, c, [1.0, 0.0], [3.0, 2.0], [1.0, 2.0]];
+    let map = Map::new(4, &SQUARE, &uvs).unwrap();
+    let found = map.integers(&[], &Tolerance::default()).unwrap_err().0;
+    assert_eq!(found, [Violation::InexactEdge { vertices: [2, 0], faces: [0, 1] }]);
+}
+
+#[test]
+fn an_edge_off_the_axes_is_named_with_its_face() {
+    let mut uvs = square([0.0; 2]);
+    uvs[5] = [1.0, 2.0];
+    let map = Map::new(4, &SQUARE, &uvs).unwrap();
+    let found = map.alignment(&[[3, 0]], &Tolerance::default()).unwrap_err().0;
+    let [Violation::OffAxis { vertices: [3, 0], face: 1, degrees }] = found[..] else {
+        panic!("{found:?}");
+    };
+    assert!((degrees - 0.5f64.atan().to_degrees()).abs() < 1e-12);
+}
+
 #[test]
 fn translations_that_are_no_integers_are_told_by_their_size() {
     let integers = |by: f64, tolerance: f64| {
