@@ -2,7 +2,7 @@
 
 use crate::meshes::Mesh;
 use seamstress_io::attributes::{Attribute, AttributeDomain, AttributeKind};
-use seamstress_io::{Format, Polymesh, read_mesh};
+use seamstress_io::{Format, PolygonMesh, Polymesh, read_mesh};
 use seamstress_mesh::Metric;
 use seamstress_parametrize::{MapOptions, Purpose, SeamlessMap, Tolerance, make_map};
 use seamstress_quantize::GridSize;
@@ -27,8 +27,7 @@ pub(crate) fn seamless(
     let kept = folder.map(|folder| folder.join(format!("{name}.{quads}.map.obj")));
     if let Some(path) = kept.as_ref().filter(|path| path.is_file()) {
         let read = read_mesh(path)?;
-        let uvs = read.corner_uvs().ok_or("the map kept has no UVs")?;
-        let corners = (0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect();
+        let corners = corner_uvs(&read).ok_or("the map kept has no UVs")?;
         let map = SeamlessMap::certify(&mesh.connectivity, corners, &Tolerance::default())?;
         return Ok((map, 0.0));
     }
@@ -43,6 +42,12 @@ pub(crate) fn seamless(
         write_map(&path, mesh, map.corner_uvs())?;
     }
     Ok((map, seconds))
+}
+
+/// The first texture coordinates of what was read, one per corner, if there are any.
+pub(crate) fn corner_uvs(read: &PolygonMesh) -> Option<Vec<[f64; 2]>> {
+    let uvs = read.corner_uvs()?;
+    Some((0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect())
 }
 
 /// Writes triangles with their UVs.

@@ -39,7 +39,14 @@ pub fn read_mesh_as(path: &Path, format: Option<Format>) -> Result<PolygonMesh, 
 /// [`ReadError`] if the file cannot be read.
 pub fn read_content(path: &Path) -> Result<Vec<u8>, ReadError> {
     let content = fs::read(path).map_err(|error| Fault::whole_file(ReadErrorKind::Io(error)));
-    let unpacked = content.and_then(|bytes| Ok(unpacked(&bytes)?.into_owned()));
+    let unpacked = content.and_then(|bytes| {
+        // Other content is not copied.
+        let unpacked = match unpacked(&bytes)? {
+            Cow::Owned(content) => Some(content),
+            Cow::Borrowed(_) => None,
+        };
+        Ok(unpacked.unwrap_or(bytes))
+    });
     unpacked.map_err(|fault| fault.named(&path.display().to_string()))
 }
 

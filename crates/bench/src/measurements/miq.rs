@@ -1,6 +1,6 @@
 //! Maps beside those of mixed-integer quadrangulation.
 
-use crate::map_files::write_mesh;
+use crate::map_files::{corner_uvs, write_mesh};
 use crate::markdown::Table;
 use crate::meshes::{Selection, Subject};
 use crate::output::Section;
@@ -94,14 +94,11 @@ impl Made {
         map: &Path,
         seconds: Vec<Option<f64>>,
     ) -> Result<Self, Box<dyn Error>> {
-        let read = read_mesh(map)?;
-        let uvs = read.corner_uvs().ok_or("the map has no UVs")?;
+        let corners = corner_uvs(&read_mesh(map)?).ok_or("the map has no UVs")?;
         let mesh = &subject.mesh.connectivity;
-        if uvs.rows.len() != mesh.n_halfedges() {
+        if corners.len() != mesh.n_halfedges() {
             return Err("the map is one of another mesh".into());
         }
-        let corners: Vec<[f64; 2]> =
-            (0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect();
         let metric = Metric::from_positions(mesh, &subject.mesh.positions);
         let distortion = distortion(mesh, &metric, &corners);
         Ok(Self { distortion, cones: cones(mesh, &corners), seconds })

@@ -1,5 +1,6 @@
 //! Maps from files.
 
+use crate::map_files::corner_uvs;
 use num_complex::Complex64;
 use seamstress_io::read_mesh;
 use seamstress_mesh::{Metric, TriMesh};
@@ -19,8 +20,7 @@ impl Input {
     /// Reads and certifies a map, and opens its exact layout.
     pub(super) fn load(path: &Path) -> Result<Self, Box<dyn Error>> {
         let read = read_mesh(path)?;
-        let uvs = read.corner_uvs().ok_or("the file has no texture coordinates")?;
-        let uvs = (0..uvs.rows.len()).map(|c| [uvs.of(c)[0], uvs.of(c)[1]]).collect();
+        let uvs = corner_uvs(&read).ok_or("the file has no texture coordinates")?;
         let faces: Result<Vec<[u32; 3]>, _> =
             read.polygons.iter().map(<[u32; 3]>::try_from).collect();
         let mesh = TriMesh::from_faces(read.positions.len(), &faces?)?;
