@@ -28,21 +28,21 @@ pub(super) fn lay_out<'m>(
     let Some(cleaned) = cleaned else {
         return lay_out_rounded(domain, rounding, effort, start, options, watch);
     };
-    let without = lay_out_as_given(&domain, &cleaned.start, options, watch)?;
-    let is_met = without.as_ref().is_some_and(|without| cleaned.is_met_by(without));
-    let with = match without {
-        // Along directions rounded matchings have far too many cones.
-        Some(without) if domain.guide.is_some() || is_met && options.fast => {
-            return Ok((domain, rounding, without));
-        }
-        Some(without) if is_met => {
+    let without = match lay_out_as_given(&domain, &cleaned.start, options, watch)? {
+        // Along directions the estimate says too little, and rounded matchings have far too many cones.
+        Some(without) if domain.guide.is_some() => return Ok((domain, rounding, without)),
+        Some(without) if cleaned.is_met_by(&without) => {
+            if options.fast {
+                return Ok((domain, rounding, without));
+            }
             let with = lay_out_as_given(&domain, &rounding.start, options, watch)?;
             let better = with.filter(|with| !cleaned.is_worth(&without, with));
             return Ok((domain, rounding, better.unwrap_or(without)));
         }
-        _ => lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch),
+        other => other,
     };
     let all = domain.features();
+    let with = lay_out_rounded(domain.clone(), rounding.clone(), effort, start, options, watch);
     match (without, unless_cancelled(with)?) {
         // Neither is worth a feature.
         (Some(without), Ok((fewer, _, with)))
