@@ -48,6 +48,12 @@ fn flipped_triangles_are_untangled() {
 }
 
 #[test]
+fn vertices_that_are_wound_too_often_are_unwound() {
+    let stretched = kit::stretch(&kit::random_surface(44), [1.0, 1.0, 10.0]);
+    assert_eq!(held(&stretched), (Route::Unwound, 0.0));
+}
+
+#[test]
 fn what_cannot_be_untangled_is_left_to_the_barrier() {
     let stretched = kit::stretch(&kit::bumpy(&kit::tetrahedron(), 0.3, 0), [1.0, 1.0, 1e3]);
     assert_eq!(held(&stretched), (Route::Barrier, 0.0));

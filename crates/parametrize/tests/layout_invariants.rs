@@ -21,6 +21,7 @@ use seamstress_parametrize::layout::barrier::barrier;
 use seamstress_parametrize::layout::exact::{ExactLayout, angle_sums};
 use seamstress_parametrize::layout::ladder::{LayoutEffort, SeamlessLayout, lay_out};
 use seamstress_parametrize::layout::newton::{NewtonOptions, Stop, minimize};
+use seamstress_parametrize::layout::patch::Patch;
 use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::layout::space::{LinearSpace, seam_residual, seamless_space};
 use seamstress_parametrize::progress::{Watch, go_on};
@@ -165,7 +166,8 @@ fn pulling_back_is_the_adjoint_of_expanding() {
 /// Lays matchings out by the barrier alone: no flips, and the angles of the cones.
 fn assert_the_barrier_closes(mesh: &TriMesh, metric: &Metric, matched: &MatchedCut) {
     let sectors = Sectors::unaligned(mesh);
-    let layout = unwatched(|watch| barrier(&sectors, metric, matched, watch)).unwrap();
+    let whole = Patch::whole(mesh, &matched.unfolding.cut);
+    let layout = unwatched(|watch| barrier(&sectors, metric, matched, &whole, watch)).unwrap();
     assert!(layout.gap < 0.05, "a gap of {} edges", layout.gap);
     let triangles = triangles(mesh, metric, &matched.unfolding.cut);
     assert!(triangles.iter().all(|t| t.doubled_area(&layout.z) > 0.0));

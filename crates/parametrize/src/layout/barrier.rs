@@ -1,24 +1,25 @@
-//! From the isometric layout, which has no flips, to one whose seams nearly close.
+//! From the isometric layout, which has no flips, to one whose seams nearly close: of the whole mesh or a patch of it.
 //!
 //! Newton steps that never flip a triangle minimise the symmetric Dirichlet energy plus a penalty on open seams,
 //! whose weight grows.
 
 use super::newton::{NewtonOptions, minimize};
+use super::patch::Patch;
 use super::penalty::SeamPenalty;
 use super::problem::LayoutProblem;
 use super::space::LinearSpace;
 use crate::cut::MatchedCut;
-use crate::energy::{SymmetricDirichlet, triangles};
+use crate::energy::{SymmetricDirichlet, Triangle, triangles};
 use crate::features::Sectors;
 use crate::progress::{SolveError, Watch};
 use crate::quarter::{rotation, unit};
 use num_complex::Complex64;
-use seamstress_mesh::Metric;
+use seamstress_mesh::{Face, Metric};
 
-/// A layout of the all-seam cut with nearly closed seams.
+/// A layout of a patch of the all-seam cut with nearly closed seams.
 #[derive(Debug, Clone)]
 pub struct PenaltyLayout {
-    /// Wedge positions.
+    /// Position of every wedge of the patch.
     pub z: Vec<Complex64>,
     /// Newton steps taken.
     pub steps: usize,
@@ -37,8 +38,8 @@ const LARGEST_TURN: f64 = 1.0;
 /// Penalty weight while seams are turned: enough for them to follow.
 const TURNING_WEIGHT: f64 = 1e2;
 
-/// Turns the seams in stages from their isometric rotations to the final matchings, and raises the penalty on these step
-/// by step.
+/// Turns the seams of a patch of the all-seam cut in stages from their isometric rotations to the final matchings, and raises
+/// the penalty on these step by step. The patch is free at its rim.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -46,13 +47,17 @@ pub fn barrier(
     sectors: &Sectors<'_>,
     metric: &Metric,
     matched: &MatchedCut,
+    patch: &Patch,
     watch: &mut Watch<'_, '_>,
 ) -> Result<PenaltyLayout, SolveError> {
     let MatchedCut { unfolding, matching } = matched;
-    let triangles = triangles(sectors.slit(), metric, &unfolding.cut);
-    let share = 1.0 / triangles.len() as f64;
+    let all = triangles(sectors.slit(), metric, &unfolding.cut);
+    let share = 1.0 / all.len() as f64;
+    let inside = |&f: &Face| Triangle { wedges: patch.wedges(f), ..all[f.at()] };
+    let triangles = patch.faces().iter().map(inside).collect();
     let excess: Vec<f64> = matched.excess().collect();
-    let widest = excess.iter().fold(0.0f64, |widest, turn| widest.max(turn.abs()));
+    let turning = unfolding.turning.iter().zip(&excess).filter(|(h, _)| patch.has(**h));
+    let widest = turning.fold(0.0f64, |widest, (_, turn)| widest.max(turn.abs()));
     let stages = (widest / LARGEST_TURN).ceil().max(1.0) as usize;
     let targets = |stage: usize| -> Vec<Complex64> {
         let left = 1.0 - stage as f64 / stages as f64;
@@ -61,11 +66,15 @@ pub fn barrier(
     };
     let turning = (1..stages).map(|stage| (stage, TURNING_WEIGHT));
     let path = turning.chain(BARRIER_WEIGHTS.map(|weight| (stages, weight)));
-    let penalty = SeamPenalty::new(sectors, unfolding, targets(0), 0.0);
-    let space = LinearSpace::free(unfolding.cut.n_wedges);
+    let penalty = SeamPenalty::new(sectors, unfolding, patch, targets(0), 0.0);
+    let space = LinearSpace::free(patch.n_wedges());
     let mut problem = LayoutProblem::new(space, triangles, Some(penalty))?;
     let isometric = unfolding.positions(sectors, metric);
-    let mut y = isometric.iter().flat_map(|z| [z.re, z.im]).collect();
+    let mut y = vec![0.0; 2 * patch.n_wedges()];
+    for (h, w) in patch.corners() {
+        let z = isometric[unfolding.cut.wedge[h] as usize];
+        [y[2 * w as usize], y[2 * w as usize + 1]] = [z.re, z.im];
+    }
     let mut steps = 0;
     for (k, (stage, weight)) in path.enumerate() {
         watch.tick(k as f64 / (stages + BARRIER_WEIGHTS.len()) as f64)?;

@@ -1,9 +1,11 @@
-//! From rounded matchings to a flip-free exact layout: three rungs, each tried where the one before leaves defects.
+//! From rounded matchings to a flip-free exact layout: rungs of a ladder, each tried where the one before leaves defects.
 
 use super::barrier::barrier;
 use super::exact::{Defects, ExactLayout};
+use super::patch::Patch;
 use super::route::Route;
 use super::untangle::untangle;
+use super::windings::unwound;
 use crate::cut::{FramedCut, MatchedCut};
 use crate::features::Sectors;
 use crate::progress::{SolveError, Watch};
@@ -34,9 +36,8 @@ pub enum LayoutEffort {
 }
 
 /// Lays out matched seams exactly: the isometric layout if there is no seam; else the one that follows the frames given,
-/// untangled if triangles are flipped; else that of the barrier homotopy, whose few flipped triangles are pulled open as well.
-/// The first without flips and wrong angles holds; if there is none, the defects of the last. (No flip alone is not enough: a
-/// vertex may be wound once too often.)
+/// its flipped triangles pulled open; its vertices unwound that are wound once too often (no flip alone is not enough); else that
+/// of the barrier homotopy. The first without flips and wrong angles holds; if there is none, the defects of the last.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -50,7 +51,7 @@ pub fn lay_out(
     let FramedCut { matched, frames } = start;
     let cut = &matched.unfolding.cut;
     let mut space = ExactLayout::new(sectors, metric, matched)?;
-    let held = |space, y, route, steps| {
+    let held = |space, Attempt { y, steps, .. }, route| {
         Ok(Ok(SeamlessLayout { matched: matched.clone(), space, y, route, steps }))
     };
     if cut.seams.is_empty() && !sectors.any_aligned() {
@@ -61,39 +62,70 @@ pub fn lay_out(
         let turn = direction(turns.map(|((to, from), area)| area * to * from.conj()).sum());
         positions.iter_mut().for_each(|z| *z *= turn);
         let y = space.adopt(cut, &positions);
-        if space.defects(sectors, &y).none() {
-            return held(space, y, Route::Isometric, 0);
+        let isometric = Attempt::new(sectors, &space, y, 0);
+        if isometric.defects.none() {
+            return held(space, isometric, Route::Isometric);
         }
     }
-    let mut y = space.poisson(frames)?;
-    let mut defects = space.defects(sectors, &y);
-    if defects.none() {
-        return held(space, y, Route::Rigid, 0);
+    let y = space.poisson(frames)?;
+    let mut attempt = Attempt::new(sectors, &space, y, 0);
+    if attempt.defects.none() {
+        return held(space, attempt, Route::Rigid);
     }
-    let mut steps = 0;
-    if !defects.flips.is_empty() {
-        (y, steps) = untangle(&mut space, y, watch)?;
-        defects = space.defects(sectors, &y);
-        if defects.none() {
-            return held(space, y, Route::Untangled, steps);
+    attempt = attempt.pulled_open(sectors, &mut space, watch)?;
+    if attempt.defects.none() {
+        return held(space, attempt, Route::Untangled);
+    }
+    if attempt.defects.flips.is_empty() {
+        let Attempt { y, defects, steps } = &attempt;
+        let (y, more) = unwound(sectors, metric, matched, &mut space, y, defects, watch)?;
+        let unwound = Attempt::new(sectors, &space, y, steps + more);
+        let unwound = unwound.pulled_open(sectors, &mut space, watch)?;
+        if unwound.defects.none() {
+            return held(space, unwound, Route::Unwound);
         }
+        attempt.steps = unwound.steps;
     }
     if effort == LayoutEffort::Brief {
-        return Ok(Err(defects));
+        return Ok(Err(attempt.defects));
     }
     watch.pulse()?;
-    let closed = barrier(sectors, metric, matched, watch)?;
-    let mut y = space.project(sectors.mesh(), cut, &closed.z)?;
-    steps += closed.steps;
-    let mut defects = space.defects(sectors, &y);
-    if !defects.flips.is_empty() {
-        // Few are, if any, and the others lie well.
-        let (pulled, more) = untangle(&mut space, y, watch)?;
-        (y, steps) = (pulled, steps + more);
-        defects = space.defects(sectors, &y);
+    let whole = Patch::whole(sectors.mesh(), cut);
+    let closed = barrier(sectors, metric, matched, &whole, watch)?;
+    let y = space.project(sectors.mesh(), cut, &closed.z)?;
+    // Few triangles are flipped, if any, and the others lie well.
+    let attempt = Attempt::new(sectors, &space, y, attempt.steps + closed.steps)
+        .pulled_open(sectors, &mut space, watch)?;
+    match attempt.defects.none() {
+        true => held(space, attempt, Route::Barrier),
+        false => Ok(Err(attempt.defects)),
     }
-    match defects.none() {
-        true => held(space, y, Route::Barrier, steps),
-        false => Ok(Err(defects)),
+}
+
+/// An exact layout, and what is wrong with it.
+struct Attempt {
+    y: Vec<f64>,
+    defects: Defects,
+    /// Newton steps so far.
+    steps: usize,
+}
+
+impl Attempt {
+    fn new(sectors: &Sectors<'_>, space: &ExactLayout, y: Vec<f64>, steps: usize) -> Self {
+        Self { defects: space.defects(sectors, &y), y, steps }
+    }
+
+    /// The same with its flipped triangles pulled open, as far as that succeeds.
+    fn pulled_open(
+        self,
+        sectors: &Sectors<'_>,
+        space: &mut ExactLayout,
+        watch: &mut Watch<'_, '_>,
+    ) -> Result<Self, SolveError> {
+        if self.defects.flips.is_empty() {
+            return Ok(self);
+        }
+        let (y, steps) = untangle(space, self.y, watch)?;
+        Ok(Self::new(sectors, space, y, self.steps + steps))
     }
 }

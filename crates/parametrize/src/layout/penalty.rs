@@ -1,5 +1,6 @@
 //! Soft closing of seams, for the homotopies.
 
+use super::patch::Patch;
 use crate::cut::Unfolding;
 use crate::features::Sectors;
 use num_complex::Complex64;
@@ -9,7 +10,8 @@ use seamstress_mesh::{Halfedge, HalfedgeData};
 /// Soft closing of seams: `weight / 2 * sum |e_right - rotation e_left|^2`; with aligned edges also of their
 /// two sides, and of what they have across their axis.
 pub struct SeamPenalty {
-    seams: Vec<SeamElement>,
+    /// The seams, and their places among the turning edges.
+    seams: Vec<(SeamElement, usize)>,
     /// The two sides of each interior feature, and their places among the axes.
     links: Vec<(SeamElement, [usize; 2])>,
     /// Every aligned half-edge.
@@ -123,30 +125,38 @@ impl AxisElement {
 }
 
 impl SeamPenalty {
-    /// Penalty on the seams of a cut, on the two sides of its interior features, and on what keeps these
-    /// from the axes; `rotations` are those of the turning edges.
+    /// Penalty on the seams of a cut within a patch, on the two sides of its interior features, and on what keeps these
+    /// from the axes; `rotations` are those of all turning edges.
     pub fn new(
         sectors: &Sectors<'_>,
         unfolding: &Unfolding,
+        patch: &Patch,
         rotations: Vec<Complex64>,
         weight: f64,
     ) -> Self {
-        let cut = &unfolding.cut;
-        let seam = |&h| SeamElement::new(cut.seam_wedges(sectors.slit(), h));
-        let mut axis_of = HalfedgeData::filled(sectors.slit().n_halfedges(), 0);
-        sectors.aligned().enumerate().for_each(|(k, h)| axis_of[h] = k);
-        let axis = |h| AxisElement { ends: cut.ends(h), turning: None };
-        let mut axes: Vec<AxisElement> = sectors.aligned().map(axis).collect();
-        for (k, &h) in unfolding.turning.iter().enumerate().skip(cut.seams.len()) {
+        let (slit, n_seams) = (sectors.slit(), unfolding.cut.seams.len());
+        let joint = |[left, right]: [Halfedge; 2]| {
+            let ([a, b], [d, c]) = (patch.ends(left), patch.ends(right));
+            SeamElement::new([a, b, c, d])
+        };
+        let is_inside = |sides: &[Halfedge; 2]| sides.iter().all(|&h| patch.has(h));
+        let seam = |(k, &h): (usize, &Halfedge)| {
+            let sides = slit.twin(h).map(|t| [h, t]).filter(is_inside)?;
+            Some((joint(sides), k))
+        };
+        let aligned = || sectors.aligned().filter(|&h| patch.has(h));
+        let mut axis_of = HalfedgeData::filled(slit.n_halfedges(), 0);
+        aligned().enumerate().for_each(|(k, h)| axis_of[h] = k);
+        let axis = |h| AxisElement { ends: patch.ends(h), turning: None };
+        let mut axes: Vec<AxisElement> = aligned().map(axis).collect();
+        let turning = unfolding.turning.iter().enumerate();
+        for (k, &h) in turning.clone().skip(n_seams).filter(|(_, h)| patch.has(**h)) {
             axes[axis_of[h]].turning = Some(k as u32);
         }
-        let link = |[h, t]: [Halfedge; 2]| {
-            let ([a, b], [d, c]) = (cut.ends(h), cut.ends(t));
-            (SeamElement::new([a, b, c, d]), [axis_of[h], axis_of[t]])
-        };
+        let link = |sides: [Halfedge; 2]| (joint(sides), sides.map(|h| axis_of[h]));
         Self {
-            seams: cut.seams.iter().map(seam).collect(),
-            links: sectors.aligned_pairs().map(link).collect(),
+            seams: turning.take(n_seams).filter_map(seam).collect(),
+            links: sectors.aligned_pairs().filter(is_inside).map(link).collect(),
             axes,
             rotations,
             weight,
@@ -160,7 +170,7 @@ impl SeamPenalty {
 
     /// Seams and links with their rotations.
     fn joints(&self) -> impl Iterator<Item = (&SeamElement, Complex64)> {
-        let seams = self.seams.iter().zip(self.rotations.iter().copied());
+        let seams = self.seams.iter().map(|(seam, k)| (seam, self.rotations[*k]));
         // The other side runs backwards.
         let across = |[h, t]: [usize; 2]| -self.to_axis(h) * self.to_axis(t).conj();
         seams.chain(self.links.iter().map(move |(link, sides)| (link, across(*sides))))
@@ -176,7 +186,8 @@ impl SeamPenalty {
 
     /// The distinct wedges of each element.
     pub(super) fn elements(&self) -> impl Iterator<Item = &[u32]> {
-        let joints = self.seams.iter().chain(self.links.iter().map(|(link, _)| link));
+        let seams = self.seams.iter().map(|(seam, _)| seam);
+        let joints = seams.chain(self.links.iter().map(|(link, _)| link));
         let axes = self.axes.iter().map(|axis| axis.ends.as_slice());
         joints.map(|joint| joint.wedges.as_slice()).chain(axes)
     }

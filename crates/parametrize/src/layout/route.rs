@@ -14,6 +14,8 @@ pub enum Route {
     Rigid,
     /// The same, and untangling of the triangles it flipped.
     Untangled,
+    /// The same, and vertices unwound around which it was wound once too often.
+    Unwound,
     /// The barrier homotopy from the isometric layout.
     Barrier,
 }
@@ -25,6 +27,7 @@ impl std::fmt::Display for Route {
             Route::Isometric => "isometric layout",
             Route::Rigid => "rigid layout",
             Route::Untangled => "rigid layout, untangled",
+            Route::Unwound => "rigid layout, unwound",
             Route::Barrier => "barrier homotopy",
         })
     }
