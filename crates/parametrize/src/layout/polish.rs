@@ -34,7 +34,7 @@ pub struct Polished {
 }
 
 /// Weight of the energy at first and at least, against tau squared: with less the energy rises for next to nothing.
-const LEAST_WEIGHT: f64 = 1.0;
+const LEAST_WEIGHT: f64 = 2.0;
 /// Iterations before the weight changes: those in which the run leaves its start.
 const PATIENCE: usize = 3;
 /// The weight is multiplied by the rise to come as a part of the one allowed, squared where it is above: it has less time to

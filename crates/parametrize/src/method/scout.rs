@@ -19,7 +19,7 @@ use seamstress_mesh::coarse::{Coarsening, coarsen};
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Geometry, TriMesh, Vertex, VertexData};
 use seamstress_parallel::beside;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// What part of the triangles a coarser mesh has, and how many at least and at most.
 struct Share {
@@ -43,6 +43,8 @@ impl Share {
 }
 /// A vertex with more curvature than this (radians) is nearer to a cone than to none: it stays.
 const SPIKE: f64 = FRAC_PI_4;
+/// By so much a surplus of index has to fall at least, against rounding errors.
+const ROUNDING: f64 = 1e-9;
 /// The bias against cones, as a part of the one asked for: a coarser mesh has fewer places for cones as it is.
 const BIAS: f64 = 0.2;
 /// A layout has 0.75 to 1 times the excess energy of one of a coarser mesh with the same cones.
@@ -105,6 +107,7 @@ pub(super) fn scout(
     );
     let Some(Coarse { stats, excess, index }) = coarse? else { return Ok(None) };
     log.enter(Stage::Layout, watch)?;
+    let index = settled_at_spikes(domain, index);
     let matched = MatchedCut::with_indices(sectors, metric, unfolding.clone(), &index);
     let frames = vec![Complex64::ONE; domain.mesh().n_faces()];
     let placed = Rounding { start: FramedCut { matched, frames }, stats };
@@ -176,6 +179,33 @@ fn coarse_cones(
     let mut index = VertexData::filled(mesh.n_vertices(), 0);
     vertices.iter().zip(found.iter()).for_each(|(&v, &k)| index[Vertex(v)] = k);
     Ok(Some(Coarse { stats, excess: layout.excess(), index }))
+}
+
+/// Indices that were found for somewhat other curvatures, moved to or from spikes along edges as long as the two ends come
+/// nearer to their own curvatures.
+///
+/// Spikes stay when a mesh is made coarser, but what lies between those next to each other does not.
+fn settled_at_spikes(domain: &Domain<'_>, mut index: VertexData<i32>) -> VertexData<i32> {
+    let (mesh, curvature) = (domain.mesh(), domain.metric.curvature(domain.mesh()));
+    let surplus = |index: i32, v: Vertex| f64::from(index) - curvature[v] / FRAC_PI_2;
+    let is_inner = |v: Vertex| !mesh.is_boundary(v);
+    let mut waiting: Vec<Vertex> =
+        mesh.vertices().filter(|&v| index[v] != 0 && is_inner(v)).collect();
+    while let Some(v) = waiting.pop() {
+        for w in mesh.outgoing(v).map(|h| mesh.tip(h)).filter(|&w| is_inner(w)) {
+            let more = surplus(index[v], v) - surplus(index[w], w);
+            let is_at_spike = [v, w].iter().any(|&v| curvature[v].abs() > SPIKE);
+            // The sum of the squares falls.
+            if is_at_spike && more.abs() > 1.0 + ROUNDING {
+                let unit = more.signum() as i32;
+                index[v] -= unit;
+                index[w] += unit;
+                waiting.extend([w, v]);
+                break;
+            }
+        }
+    }
+    index
 }
 
 fn of_vertices<T: Copy>(vertices: &[u32], all: &[T]) -> Vec<T> {
