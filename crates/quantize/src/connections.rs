@@ -99,8 +99,9 @@ impl Beams<'_> {
         // Towards the right side of the triangle, and towards its left.
         let to_right = Beam { edge: t.next(), turns, depth, ..beam };
         let to_left = Beam { edge: t.prev(), right_end: apex, turns, depth, ..beam };
-        let right_near = distance(beam.right_end, apex) < self.radius;
-        let left_near = distance(apex, left_end) < self.radius;
+        let near = self.radius * self.radius;
+        let right_near = squared_distance(beam.right_end, apex) < near;
+        let left_near = squared_distance(apex, left_end) < near;
         if of_right > 0.0 && of_left < 0.0 {
             self.see(from, t.prev(), apex, crossed);
             // A grid point in the way ends the lines through it.
@@ -129,10 +130,10 @@ impl Beams<'_> {
     }
 }
 
-/// Distance of the origin from a segment.
-fn distance(a: Complex64, b: Complex64) -> f64 {
+/// Square of the distance of the origin from a segment.
+fn squared_distance(a: Complex64, b: Complex64) -> f64 {
     let d = b - a;
     let square = d.norm_sqr();
     let t = if square > 0.0 { (-(a.conj() * d).re / square).clamp(0.0, 1.0) } else { 0.0 };
-    (a + d * t).norm()
+    (a + d * t).norm_sqr()
 }

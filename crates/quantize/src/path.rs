@@ -7,7 +7,7 @@ use seamstress_parametrize::layout::problem::LayoutProblem;
 use seamstress_parametrize::progress::{Cancelled, Watch};
 
 /// Most moves. Paths that arrive take up to 28 on the meshes measured, nearly all of them fewer than 10.
-const MOST_MOVES: usize = 60;
+const MOST_MOVES: usize = 30;
 /// Share of the largest flip-free step that is taken: the rest keeps triangles from being nearly flat.
 const STEP_FRACTION: f64 = 0.9;
 /// A step that raises the energy too much is cut to this share.

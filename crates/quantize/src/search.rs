@@ -188,12 +188,7 @@ impl<'a> ComponentSearch<'a> {
         watch: &mut Watch<'_, '_>,
     ) -> Result<Placement, QuantizationFailure> {
         let is_greedy = self.options.rounding == RoundingMethod::Greedy;
-        let fewest = match self.piece.mesh.has_boundary() {
-            _ if is_greedy => 1.0,
-            true => FEWEST_OPEN_CELLS,
-            false => FEWEST_CELLS,
-        };
-        let asked = cell.min(self.layout.side() / fewest.sqrt()) / self.layout.unit;
+        let asked = self.cell(cell) / self.layout.unit;
         let finer = REFINEMENTS.iter().map(|&k| REFINEMENT.powi(-k));
         let n_shares = match &self.coarsest {
             _ if is_greedy => 1,
@@ -238,9 +233,24 @@ impl<'a> ComponentSearch<'a> {
         self.work >= self.options.effort as f64
     }
 
+    /// The size of its cells where a size is asked for, both in mesh units: smaller where the component is not much larger.
+    fn cell(&self, asked: f64) -> f64 {
+        let fewest = match self.piece.mesh.has_boundary() {
+            _ if self.options.rounding == RoundingMethod::Greedy => 1.0,
+            true => FEWEST_OPEN_CELLS,
+            false => FEWEST_CELLS,
+        };
+        asked.min(self.side() / f64::sqrt(fewest))
+    }
+
+    /// The cells that it is to have where a size is asked for, mesh units.
+    pub(crate) fn cells(&self, asked: f64) -> f64 {
+        (self.side() / self.cell(asked)).powi(2)
+    }
+
     /// The lines that had to get much longer for cells of a size in mesh units, if there are some.
     pub(crate) fn short_lines(&mut self, cell: f64) -> Option<QuantizationFailure> {
-        let h = cell / self.layout.unit;
+        let h = self.cell(cell) / self.layout.unit;
         let problem = self.obstacles.problem(&self.layout, &self.energy, h).ok()?;
         let is_short = |c: &&Constraint| c.minimum > 0 && c.length < SHORT_LINE;
         let pairs = ends_of(problem.constraints.iter().filter(is_short));

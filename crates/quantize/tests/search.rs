@@ -93,14 +93,35 @@ fn a_map_that_was_found_is_not_lost() {
     assert!(kept.components[0].grids > kept.sizes_tried);
 }
 
+/// Would rather have another map.
+struct Wishing;
+
+impl Decisions for Wishing {
+    fn goes_on(&mut self, _: &QuantizationFailure) -> bool {
+        false
+    }
+}
+
+#[test]
+fn lines_of_a_component_are_measured_by_its_own_cells() {
+    let speck = testkit::scale(&testkit::icosphere(1), 0.01);
+    let soup = testkit::disjoint_union(&[testkit::icosphere(2), speck]);
+    let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+    let mut go_on = |_| ControlFlow::Continue(());
+    let map = make_map(&mesh, &soup.positions, &MapOptions::default(), &mut go_on).unwrap().map;
+    let options = QuantizeOptions { size: GridSize::Quads(30.0), ..Default::default() };
+    let nothing = EdgeSet::new(&mesh, []);
+    let (positions, decisions) = (&soup.positions, &mut Wishing);
+    let made = quantize_deciding(&mesh, positions, &map, &nothing, &options, decisions, &mut go_on);
+    let made = made.unwrap();
+    // 30, and the fewest that a component has.
+    assert!((made.cells_asked - 54.0).abs() < 0.1, "{}", made.cells_asked);
+    assert!(made.quads() > 1.1 * 30.0, "{} quads", made.quads());
+    assert_eq!(made.crowded, [[0; 2]; 0]);
+}
+
 #[test]
 fn a_map_with_too_many_cells_is_kept_though_the_caller_would_rather_have_another() {
-    struct Wishing;
-    impl Decisions for Wishing {
-        fn goes_on(&mut self, _: &QuantizationFailure) -> bool {
-            false
-        }
-    }
     // Thinner than a cell, so that its two sides are short lines apart.
     let slab = testkit::subdivide(&testkit::slab_with_holes(6));
     let soup = testkit::stretch(&slab, [1.0, 1.0, 0.15]);
