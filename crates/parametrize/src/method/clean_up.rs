@@ -15,8 +15,11 @@ const MAP_DEVIATION: f64 = 1.5;
 /// the cells around it whatever their size, and takes room from its neighbours.
 const QUAD_PRICE: f64 = 0.0015;
 const QUAD_CELLS: f64 = 4.0;
-/// Prices count so many times along a guide, after which there are more cones than a smooth map needs.
+/// Prices count so many times along a guide, after which there are more cones than a smooth map needs, and are at least this,
+/// for maps too: what turns the guide has a price of its own beside it, and the estimate, which knows of no directions, draws
+/// cones off their lines where it weighs more.
 const GUIDED: f64 = 2.0;
+const LEAST_GUIDED_PRICE: f64 = 0.01;
 /// Spikes that are small against the cells may be flattened.
 const QUAD_DEVIATION: f64 = 3.5;
 /// What lowering tau to its e-th part is worth, as mean symmetric Dirichlet energy.
@@ -52,7 +55,7 @@ impl CleanUpTerms {
         };
         let usual_price = match domain.guide {
             None => usual.price,
-            Some(_) => GUIDED * usual.price,
+            Some(_) => LEAST_GUIDED_PRICE.max(GUIDED * usual.price),
         };
         let price = options.cone_price.unwrap_or(usual_price);
         let is_wanted = price > 0.0 && start.leaves_cones_free();

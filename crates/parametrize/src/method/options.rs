@@ -35,7 +35,7 @@ pub struct MapOptions {
     pub purpose: Purpose,
     /// Mean symmetric Dirichlet energy that may be paid for one cone fewer, in clean-up; 0 leaves the
     /// cones as they were rounded. None: 0.0005; for quads the share of the surface that four of them have, but at
-    /// least 0.0015.
+    /// least 0.0015; along directions twice that, at least 0.01.
     pub cone_price: Option<f64>,
     /// The least turn of a corner of aligned curves, degrees: in itself, and for quads from the mean direction over a
     /// cell before it to that after it.

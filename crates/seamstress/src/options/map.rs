@@ -110,7 +110,7 @@ pub struct MapOptions {
 
     /// How much the mean symmetric Dirichlet energy (4 is no distortion) may rise for each cone removed in clean-up;
     /// 0 turns clean-up off [default: 0.0005; for quads the area of four of them as a share of the surface, at least
-    /// 0.0015]
+    /// 0.0015; twice that along directions, at least 0.01]
     #[cfg_attr(feature = "clap", arg(long, value_name = "X", value_parser = parse::not_negative))]
     pub cone_price: Option<f64>,
 
