@@ -45,8 +45,6 @@ pub struct Quantization {
     pub cell: f64,
     /// Cell sizes tried to meet a number of quads.
     pub sizes_tried: usize,
-    /// Cells of the size asked for, on all components: more than the number asked for where there are many small ones.
-    pub cells_asked: f64,
     /// Pairs of vertices with lines between them that are much shorter than a cell, where these are why a number of quads is
     /// missed and the caller would rather have another map.
     pub crowded: Vec<[u32; 2]>,
@@ -119,7 +117,6 @@ pub fn quantize_deciding<'a>(
     let pieces = components::components(mesh).unwrap_or_default();
     let mut all = Components { pieces: &pieces, searches: Vec::new(), decisions, observer };
     all.read(geometry, map, aligned, options)?;
-    let cells_asked = all.cells(options.size.cell(all.side()));
     let (Sized { cell, placements, tried, .. }, crowded) = all.meet(options)?;
     let mut corner_uvs = vec![[0.0; 2]; mesh.n_halfedges()];
     let mut stats = Vec::with_capacity(pieces.len());
@@ -133,16 +130,8 @@ pub fn quantize_deciding<'a>(
     let before = distortion(mesh, &metric, map.corner_uvs());
     let after = distortion(mesh, &metric, &corner_uvs);
     let map = IntegerGridMap::certify_aligned(mesh, corner_uvs, &pairs, &options.tolerance)?;
-    Ok(Quantization {
-        map,
-        distortion: after,
-        before,
-        cell,
-        sizes_tried: tried,
-        cells_asked,
-        crowded,
-        components: stats,
-    })
+    let (distortion, sizes_tried, components) = (after, tried, stats);
+    Ok(Quantization { map, distortion, before, cell, sizes_tried, crowded, components })
 }
 
 /// All components on cells of one size.
@@ -210,7 +199,8 @@ impl<'p> Components<'p, '_, '_> {
     /// cells grow. Names the lines for which the caller would rather have another map.
     fn meet(&mut self, options: &QuantizeOptions) -> Result<(Sized, Vec<[u32; 2]>), QuantizeError> {
         let (size, most_work) = (options.size, SIZES_SHARE * options.effort as f64);
-        let mut cell = size.cell(self.side());
+        let side = self.searches.iter().map(ComponentSearch::side).fold(0.0, f64::hypot);
+        let mut cell = size.cell(side);
         let mut best: Option<Sized> = None;
         let (mut crowded, mut last, mut first_work) = (Vec::new(), None, 0.0);
         for tried in 1..=2 * MOST_SIZES {
@@ -254,16 +244,6 @@ impl<'p> Components<'p, '_, '_> {
             crowded = self.crowded(best.cell);
         }
         Ok((best, crowded))
-    }
-
-    /// Side of a square with the area of all components, mesh units.
-    fn side(&self) -> f64 {
-        self.searches.iter().map(ComponentSearch::side).fold(0.0, f64::hypot)
-    }
-
-    /// The cells that all components are to have, of a size in mesh units.
-    fn cells(&self, cell: f64) -> f64 {
-        self.searches.iter().map(|search| search.cells(cell)).sum()
     }
 
     /// The work done on the component that took most.

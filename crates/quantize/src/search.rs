@@ -243,11 +243,6 @@ impl<'a> ComponentSearch<'a> {
         asked.min(self.side() / f64::sqrt(fewest))
     }
 
-    /// The cells that it is to have where a size is asked for, mesh units.
-    pub(crate) fn cells(&self, asked: f64) -> f64 {
-        (self.side() / self.cell(asked)).powi(2)
-    }
-
     /// The lines that had to get much longer for cells of a size in mesh units, if there are some.
     pub(crate) fn short_lines(&mut self, cell: f64) -> Option<QuantizationFailure> {
         let h = self.cell(cell) / self.layout.unit;

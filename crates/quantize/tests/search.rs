@@ -114,8 +114,7 @@ fn lines_of_a_component_are_measured_by_its_own_cells() {
     let (positions, decisions) = (&soup.positions, &mut Wishing);
     let made = quantize_deciding(&mesh, positions, &map, &nothing, &options, decisions, &mut go_on);
     let made = made.unwrap();
-    // 30, and the fewest that a component has.
-    assert!((made.cells_asked - 54.0).abs() < 0.1, "{}", made.cells_asked);
+    // The small one has the fewest that a component has beside them.
     assert!(made.quads() > 1.1 * 30.0, "{} quads", made.quads());
     assert_eq!(made.crowded, [[0; 2]; 0]);
 }
