@@ -156,22 +156,28 @@ fn weaker_edges(
     weaker
 }
 
-/// Removes the features at the vertices of a set widened by some rings of faces.
-pub(crate) fn release_near(
-    mesh: &TriMesh,
-    mut near: VertexData<bool>,
-    rings: usize,
-    features: &EdgeSet,
-) -> (EdgeSet, Vec<ReleasedFeature>) {
+/// A set of vertices widened by some rings of faces.
+pub(crate) fn widened(mesh: &TriMesh, mut set: VertexData<bool>, rings: usize) -> VertexData<bool> {
     for _ in 0..rings {
-        let inner = near.clone();
+        let inner = set.clone();
         for f in mesh.faces() {
             let corners = mesh.face_vertices(f);
             if corners.iter().any(|&v| inner[v]) {
-                corners.iter().for_each(|&v| near[v] = true);
+                corners.iter().for_each(|&v| set[v] = true);
             }
         }
     }
+    set
+}
+
+/// Removes the features at the vertices of a set widened by some rings of faces.
+pub(crate) fn release_near(
+    mesh: &TriMesh,
+    near: VertexData<bool>,
+    rings: usize,
+    features: &EdgeSet,
+) -> (EdgeSet, Vec<ReleasedFeature>) {
+    let near = widened(mesh, near, rings);
     let touches = |h: &Halfedge| near[mesh.origin(*h)] || near[mesh.tip(*h)];
     let touched: Vec<Halfedge> = features.edges().iter().copied().filter(touches).collect();
     let released = released(mesh, &touched, ReleaseReason::NoLayout);

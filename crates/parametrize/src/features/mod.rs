@@ -6,9 +6,8 @@ mod corners;
 mod sectors;
 
 pub use bounds::{QUARTERS_PER_CORNER, index_bounds};
-pub(crate) use conflicts::released;
 pub use conflicts::{ReleaseReason, ReleasedFeature};
-pub(crate) use conflicts::{drop_conflicts, release_near};
+pub(crate) use conflicts::{drop_conflicts, release_near, released, widened};
 pub use corners::CornerRule;
 pub(crate) use sectors::LARGEST_INDEX;
 pub use sectors::{Road, Sectors};

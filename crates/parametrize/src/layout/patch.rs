@@ -1,6 +1,7 @@
 //! Some faces of a cut mesh.
 
 use crate::cut::{Cut, DisjointSets};
+use crate::features::widened;
 use seamstress_mesh::{Face, FaceData, Halfedge, HalfedgeData, TriMesh, VertexData};
 
 /// Some faces of a cut mesh, with numbers of their own for their wedges.
@@ -22,13 +23,12 @@ impl Patch {
     }
 
     /// The faces in so many rings around marked vertices.
-    pub fn around(mesh: &TriMesh, cut: &Cut, mut marked: VertexData<bool>, rings: usize) -> Self {
-        let mut faces: Vec<Face> = Vec::new();
-        for _ in 0..rings {
-            faces.iter().flat_map(|&f| mesh.face_vertices(f)).for_each(|v| marked[v] = true);
-            let is_near = |&f: &Face| mesh.face_vertices(f).into_iter().any(|v| marked[v]);
-            faces = mesh.faces().filter(is_near).collect();
-        }
+    pub fn around(mesh: &TriMesh, cut: &Cut, marked: VertexData<bool>, rings: usize) -> Self {
+        // The last ring is of the faces that touch the others.
+        let inner = rings.checked_sub(1).map(|rings| widened(mesh, marked, rings));
+        let touches = |inner: &VertexData<bool>, f| mesh.face_vertices(f).iter().any(|&v| inner[v]);
+        let is_near = |&f: &Face| inner.as_ref().is_some_and(|inner| touches(inner, f));
+        let faces: Vec<Face> = mesh.faces().filter(is_near).collect();
         let mut is_inside = FaceData::filled(mesh.n_faces(), false);
         let mut wedge = HalfedgeData::filled(mesh.n_halfedges(), u32::MAX);
         let (mut number, mut n_wedges) = (vec![None; cut.n_wedges], 0);
