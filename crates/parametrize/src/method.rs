@@ -76,7 +76,7 @@ fn parametrize(
 
     // Polish: lower the worst distortion for a bounded rise of the mean.
     log.enter(Stage::Polish, watch)?;
-    let (layout, iterations) = polish(relaxed, options.polish.as_ref(), watch)?;
+    let (layout, iterations) = polish(relaxed, options.polish(domain.guide.is_some()), watch)?;
     log.count(iterations);
     let route = layout.route;
     let mut candidates = vec![domain.corner_uvs(&layout)];

@@ -144,6 +144,24 @@ impl<'m> Sectors<'m> {
         self.dissection.get_or_init(|| Dissection::new(&graph()))
     }
 
+    /// An elimination order of the sectors, for systems that couple the ends of edges.
+    pub(crate) fn order(&self) -> Vec<u32> {
+        let lies = self.vertex.enumerate().map(|(s, v)| (s.0, v.0));
+        self.dissection().induced(self.vertex.len(), lies)
+    }
+
+    /// An elimination order of `n` unknowns, for systems that couple faces across edges; the faces come first among them.
+    pub(crate) fn order_of_faces(&self, n: usize) -> Vec<u32> {
+        // A face is where its two corners are that go first.
+        let dissection = self.dissection();
+        let corners = self.mesh.faces().flat_map(|f| {
+            let mut corners = self.mesh.face_vertices(f).map(|v| v.0);
+            corners.sort_unstable_by_key(|&v| dissection.place(v));
+            [(f.0, corners[0]), (f.0, corners[1])]
+        });
+        dissection.induced(n, corners)
+    }
+
     /// The vertex of the mesh a sector is a part of.
     #[must_use]
     pub fn vertex(&self, sector: Vertex) -> Vertex {

@@ -39,6 +39,21 @@ impl<'a> Bending<'a> {
         positions: &[[f64; 3]],
         metric: &Metric,
     ) -> Result<Self, NotPositiveDefinite> {
+        let edges = mesh.edges().map(|h| (mesh.origin(h).0, mesh.tip(h).0));
+        let graph = Graph::from_edges(mesh.n_vertices(), edges);
+        Self::ordered(mesh, positions, metric, &fill_reducing_order(&graph))
+    }
+
+    /// The same where an elimination order of the vertices is known.
+    ///
+    /// # Errors
+    /// When the diffusion cannot be solved.
+    pub(crate) fn ordered(
+        mesh: &'a TriMesh,
+        positions: &[[f64; 3]],
+        metric: &Metric,
+        order: &[u32],
+    ) -> Result<Self, NotPositiveDefinite> {
         let n = mesh.n_vertices();
         let edge = |h: Halfedge| {
             let (a, b) = (positions[mesh.origin(h).at()], positions[mesh.tip(h).at()]);
@@ -63,7 +78,7 @@ impl<'a> Bending<'a> {
                 tensors[k * n + mesh.tip(h).at()] += entry;
             }
         }
-        let diffusion = Diffusion::new(mesh, metric)?;
+        let diffusion = Diffusion::new(mesh, metric, order)?;
         Ok(Self { mesh, axes, tensors, diffusion })
     }
 
@@ -109,16 +124,13 @@ struct Diffusion<'a> {
 }
 
 impl<'a> Diffusion<'a> {
-    fn new(mesh: &'a TriMesh, metric: &Metric) -> Result<Self, NotPositiveDefinite> {
+    fn new(mesh: &'a TriMesh, metric: &Metric, order: &[u32]) -> Result<Self, NotPositiveDefinite> {
         let n = mesh.n_vertices();
-        let edges: Vec<[u32; 2]> =
-            mesh.edges().map(|h| [mesh.origin(h).0, mesh.tip(h).0]).collect();
-        let pattern = Pattern::of_cliques(n, edges.iter());
-        let graph = Graph::from_edges(n, edges.iter().map(|&[a, b]| (a, b)));
-        let order = fill_reducing_order(&graph);
+        let ends = |h| [mesh.origin(h).0, mesh.tip(h).0];
+        let pattern = Pattern::of_cliques(n, mesh.edges().map(ends));
         let (cotangent, area) = (metric.cotangent(), metric.vertex_area(mesh));
         let weights = mesh.edges().map(|h| edge_weight(mesh, &cotangent, h)).collect();
-        let cholesky = Cholesky::analyze(&pattern, &order)?;
+        let cholesky = Cholesky::analyze(&pattern, order)?;
         Ok(Self { mesh, pattern, cholesky, area, weights })
     }
 

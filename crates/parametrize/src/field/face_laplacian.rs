@@ -20,11 +20,20 @@ impl<T: Scalar + std::ops::AddAssign + From<f64>> FaceMatrix<T> {
     /// # Errors
     /// When memory runs out.
     pub(super) fn new(mesh: &TriMesh) -> Result<Self, NotPositiveDefinite> {
+        let sides = |h: Halfedge| Some((h.face().0, mesh.twin(h)?.face().0));
+        let graph = Graph::from_edges(mesh.n_faces(), mesh.interior_edges().filter_map(sides));
+        Self::ordered(mesh, &fill_reducing_order(&graph))
+    }
+
+    /// The same where an elimination order of the faces is known.
+    ///
+    /// # Errors
+    /// When memory runs out.
+    pub(super) fn ordered(mesh: &TriMesh, order: &[u32]) -> Result<Self, NotPositiveDefinite> {
         let sides = |h: Halfedge| [h.face().0, mesh.twin(h).map_or(h, |t| t).face().0];
         let faces: Vec<[u32; 2]> = mesh.interior_edges().map(sides).collect();
         let pattern = Pattern::of_cliques(mesh.n_faces(), faces.iter());
-        let graph = Graph::from_edges(mesh.n_faces(), faces.iter().map(|&[f, g]| (f, g)));
-        let cholesky = Cholesky::analyze(&pattern, &fill_reducing_order(&graph))?;
+        let cholesky = Cholesky::analyze(&pattern, order)?;
         let values = vec![T::default(); pattern.len()];
         Ok(Self { faces, pattern, values, cholesky })
     }

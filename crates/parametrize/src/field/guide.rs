@@ -58,7 +58,9 @@ impl Guide {
         let geometry = geometry.into();
         let positions: Vec<[f64; 3]> =
             slit.vertices().map(|s| geometry.positions[sectors.vertex(s).at()]).collect();
-        let bent = Bending::new(slit, &positions, metric)?.averaged(RADIUS * cell)?;
+        let order = sectors.order();
+        let mut bending = Bending::ordered(slit, &positions, metric, &order)?;
+        let bent = bending.averaged(RADIUS * cell)?;
         let bent: FaceData<Complex64> = bent.iter().map(|bent| bent.anisotropy).collect();
         let reach = cell.max(LEAST_CELL * metric.total_area().sqrt());
         let certainty = |(f, half): (Face, &Complex64)| {
@@ -118,7 +120,8 @@ fn smoothed(
     let bare = rotations(slit, metric, &FaceData::filled(slit.n_faces(), Complex64::ONE));
     let across: Vec<Complex64> = slit.interior_edges().map(|h| rotation(-4.0 * bare[h])).collect();
     let share = |f: usize| metric.area[Face(f as u32)] / (length * length);
-    let mut matrix = FaceMatrix::<Complex64>::new(slit)?;
+    let mut matrix =
+        FaceMatrix::<Complex64>::ordered(slit, &sectors.order_of_faces(slit.n_faces()))?;
     matrix.factorize_near(
         |e| (1.0, -across[e]),
         |f| share(f) * stiffness[Face(f as u32)],

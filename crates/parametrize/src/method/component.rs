@@ -40,8 +40,8 @@ pub(super) fn map_component(
     Ok(unless_cancelled(other)?.unwrap_or(map))
 }
 
-/// Maps a domain along its features and its guide; where that fails, or features are lost, without the guide, then with
-/// nothing aligned, and then in a metric without thin triangles.
+/// Maps a domain along its features and its guide; where that fails, without the guide, then with nothing aligned, and then
+/// in a metric without thin triangles.
 ///
 /// # Errors
 /// [`MethodError`] of the last trial.
@@ -53,10 +53,6 @@ fn map_domain(
 ) -> Result<ComponentMap, MethodError> {
     loop {
         match unless_cancelled(parametrize(domain.clone(), start, options, watch))? {
-            // Features come before directions.
-            Ok(map) if domain.guide.is_some() && map.released.len() > domain.released.len() => {
-                domain.guide = None;
-            }
             Ok(map) => return Ok(map),
             Err(error) => domain = domain.simpler().ok_or(error)?,
         }

@@ -125,11 +125,12 @@ impl<'m> Domain<'m> {
         Some(Self { metric, lengthening, ..self.clone() })
     }
 
-    /// The same with the features dropped near defects; none if nothing is left to align then, if too many are released,
-    /// or if that was tried often enough.
+    /// The same with the features dropped near defects; none if nothing is left to align then, if too many are released, if
+    /// that was tried often enough, or if there is a guide: features come before directions.
     pub(super) fn without_features_at(&self, defects: &Defects) -> Option<Self> {
         let near = defects.vertices(self.mesh());
-        let may_drop = self.any_aligned() && self.rounds < DROP_ROUNDS;
+        let is_first = self.guide.is_none() && self.any_aligned();
+        let may_drop = is_first && self.rounds < DROP_ROUNDS;
         let fewer = may_drop.then(|| self.without_features_near(near, self.rounds))?;
         (fewer.any_aligned() && fewer.is_wanted()).then_some(fewer)
     }

@@ -65,7 +65,8 @@ pub(super) fn lay_out_as_given(
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<Option<RelaxedLayout>, MethodError> {
-    // The last rung costs most, and what it finds is seldom as good as expected; along a guide more cones depend on it.
+    // The last rung costs most, and what it finds is seldom as good as expected; along a guide far more cones are the other
+    // way out.
     let effort = match domain.guide {
         None => LayoutEffort::Brief,
         Some(_) => LayoutEffort::Thorough,
@@ -74,8 +75,6 @@ pub(super) fn lay_out_as_given(
     let layout = ladder::lay_out(sectors, metric, start, effort, watch);
     match unless_cancelled(layout)? {
         Ok(Ok(layout)) => Ok(Some(relax(layout, domain.guide.as_ref(), options, watch)?)),
-        // As they were rounded along a guide, cones are far too many.
-        Ok(Err(defects)) if domain.guide.is_some() => Err(MethodError::Defective(defects)),
         Ok(Err(_)) | Err(_) => Ok(None),
     }
 }
@@ -119,5 +118,41 @@ fn lay_out_rounded<'m>(
                 round(fewer, unfolding, start, options, watch)?
             }
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::clean_up::clean_up;
+    use super::*;
+    use seamstress_mesh::features::EdgeSet;
+    use seamstress_mesh::{Geometry, Metric, TriMesh};
+    use seamstress_testkit as kit;
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn directions_stay_where_cleaned_matchings_have_no_layout() {
+        let soup = kit::bumpy(&kit::torus(24, 12, 2.0, 0.8), 0.2, 1);
+        let mesh = TriMesh::from_faces(soup.positions.len(), &soup.faces).unwrap();
+        let metric = Metric::from_positions(&mesh, &soup.positions);
+        let options = MapOptions { alignment: 1.0, ..Default::default() };
+        let (geometry, none) = (Geometry::from(&soup.positions), EdgeSet::new(&mesh, []));
+        let domain = Domain::new(&mesh, geometry, &metric, none, &options);
+        let mut go_on = |_| ControlFlow::Continue(());
+        let mut watch = Watch::new(&mut go_on, 0, 1);
+        let watch = &mut watch;
+        let start = &Start::Mesh;
+        let (domain, rounding) =
+            round(domain.clone(), domain.unfold(), start, &options, watch).unwrap();
+        let mut cleaned =
+            clean_up(&domain, &rounding.start, start, &options, watch).unwrap().unwrap();
+        // Two turns more: no triangles have such angles.
+        cleaned.start.matched.matching[0] += 8;
+        assert!(lay_out_as_given(&domain, &cleaned.start, &options, watch).unwrap().is_none());
+        let (effort, cleaned) = (LayoutEffort::Thorough, Some(&cleaned));
+        let (domain, _, layout) =
+            lay_out(domain, rounding, cleaned, effort, start, &options, watch).unwrap();
+        assert!(domain.guide.is_some());
+        assert!(layout.excess() < 1.0, "{}", layout.excess());
     }
 }

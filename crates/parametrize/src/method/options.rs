@@ -104,6 +104,13 @@ impl MapOptions {
         if is_any { guide() } else { None }
     }
 
+    /// The finish of a map with or without directions, if it has any. Quads along directions do without: on the grid the mean
+    /// energy is minimised once more, which undoes it.
+    pub(super) fn polish(&self, is_guided: bool) -> Option<&PolishOptions> {
+        let is_for_grid = is_guided && matches!(self.purpose, Purpose::Quads { .. });
+        self.polish.as_ref().filter(|_| !is_for_grid)
+    }
+
     /// Largest index of a cone that is not prescribed, quarters.
     pub(super) fn largest_index(&self) -> i32 {
         match self.purpose {

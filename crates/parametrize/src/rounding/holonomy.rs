@@ -69,14 +69,7 @@ impl<'a> Holonomy<'a> {
             })
             .collect();
         let pattern = Pattern::of_cliques(nodes, sides.iter());
-        // Two faces are coupled across an edge: a face is where its two corners are that go first.
-        let dissection = sectors.dissection();
-        let corners = slit.faces().flat_map(|f| {
-            let mut corners = slit.face_vertices(f).map(|s| sectors.vertex(s).0);
-            corners.sort_unstable_by_key(|&v| dissection.place(v));
-            [(f.0, corners[0]), (f.0, corners[1])]
-        });
-        let order = dissection.induced(nodes, corners);
+        let order = sectors.order_of_faces(nodes);
         let mut matrix = vec![0.0; pattern.len()];
         for &k in pattern.diagonal() {
             matrix[k as usize] = SHIFT;

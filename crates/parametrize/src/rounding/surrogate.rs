@@ -30,6 +30,9 @@ pub struct Surrogate<'a> {
     scale: Vec<f64>,
     /// `L^-1 M u`: half the gradient of the energy with respect to the curvature.
     gradient: Vec<f64>,
+    /// `P m` for the areas m, where `P` is the inverse in which pins are held, and its mean over each piece.
+    of_area: Vec<f64>,
+    mean_of_area: Vec<f64>,
     /// Change of the gradient at every sector for a unit of index less there.
     own: VertexData<f64>,
 }
@@ -59,9 +62,7 @@ impl<'a> Surrogate<'a> {
         let n = mesh.n_vertices();
         let ends = |h| [mesh.origin(h).0, mesh.tip(h).0];
         let pattern = Pattern::of_cliques(n, mesh.edges().map(ends));
-        let vertices = mesh.vertices().map(|s| (s.0, sectors.vertex(s).0));
-        let order = sectors.dissection().induced(n, vertices);
-        let mut cholesky = Cholesky::analyze(&pattern, &order)?;
+        let mut cholesky = Cholesky::analyze(&pattern, &sectors.order())?;
         let cotangent = metric.cotangent();
         let area = metric.vertex_area(mesh);
         let pieces = Pieces::new(sectors, &area);
@@ -91,8 +92,13 @@ impl<'a> Surrogate<'a> {
             cholesky,
             scale: Vec::new(),
             gradient: Vec::new(),
+            of_area: Vec::new(),
+            mean_of_area: Vec::new(),
             own: VertexData::filled(n, 0.0),
         };
+        surrogate.of_area = surrogate.held_solution(surrogate.area.to_vec());
+        let weighted = surrogate.weighted(&surrogate.of_area);
+        surrogate.mean_of_area = surrogate.pieces.means(weighted.into_iter());
         surrogate.own = surrogate.own_responses(&pattern, &matrix)?;
         surrogate.refresh(metric, index);
         Ok(surrogate)
@@ -119,22 +125,17 @@ impl<'a> Surrogate<'a> {
         });
         let (low, high) = (low?, high?);
         self.cholesky.factorize(matrix)?;
-        // h = P m and p = P M h, with their sums over each piece.
-        let mut h: Vec<f64> = self.area.to_vec();
-        self.hold(&mut h);
-        self.cholesky.solve_columns(&mut h, 1);
-        let mut p = self.weighted(&h);
-        let mean_h = self.pieces.means(p.iter().copied());
-        self.hold(&mut p);
-        self.cholesky.solve_columns(&mut p, 1);
-        let mean_p = self.pieces.means(self.weighted(&p).into_iter());
+        // h = P m and p = P M h, with their means over each piece.
+        let (h, mean_h) = (&self.of_area, &self.mean_of_area);
+        let p = self.held_solution(self.weighted(h));
+        let mean_p = &self.pieces.means(self.weighted(&p).into_iter());
         let of = |s: Vertex| {
             let slope = (low[slot(s)] - high[slot(s)]) / (2.0 * t);
             let held = if held[s] { 0.0 } else { slope };
             let means = self.pieces.floating_area(s).map_or(0.0, |area| {
                 let (h, p) = (h[s.at()], p[s.at()]);
                 let [mean_h, mean_p] =
-                    [&mean_h, &mean_p].map(|m| m[self.pieces.of_sector[s] as usize]);
+                    [mean_h, mean_p].map(|m| m[self.pieces.of_sector[s] as usize]);
                 (mean_p - mean_h * mean_h - h * h - 2.0 * (p - h * mean_h)) / area
             });
             (held + means) * FRAC_PI_2
@@ -168,6 +169,13 @@ impl<'a> Surrogate<'a> {
         }
     }
 
+    /// `P b`.
+    fn held_solution(&self, mut b: Vec<f64>) -> Vec<f64> {
+        self.hold(&mut b);
+        self.cholesky.solve_columns(&mut b, 1);
+        b
+    }
+
     fn solved(&self, mut b: Vec<f64>) -> Vec<f64> {
         self.solve(&mut b);
         b
@@ -199,20 +207,42 @@ impl<'a> Surrogate<'a> {
         let of_chunk = |chunk: &[Vertex]| {
             let mut columns = vec![0.0; n * chunk.len()];
             for (column, v) in columns.chunks_exact_mut(n).zip(chunk) {
-                column[v.at()] = if self.sectors.is_free(*v) { 0.0 } else { FRAC_PI_2 };
+                column[v.at()] = FRAC_PI_2;
+                self.hold(column);
             }
-            self.solve(&mut columns);
-            for column in columns.chunks_exact_mut(n) {
-                column.iter_mut().zip(self.area.iter()).for_each(|(u, m)| *u *= m);
-            }
-            self.solve(&mut columns);
-            let falls = columns.chunks_exact(n).zip(chunk).map(|(column, v)| {
-                let own = column[v.at()];
-                Response(column.iter().map(|g| (own - g) as f32).collect())
+            // The way forwards is short for columns that are zero but for one sector.
+            self.cholesky.solve_columns(&mut columns, chunk.len());
+            let each = columns.chunks_exact_mut(n).zip(chunk);
+            let means: Vec<f64> = each.map(|(column, &v)| self.weigh(column, v)).collect();
+            self.cholesky.solve_columns(&mut columns, chunk.len());
+            let each = columns.chunks_exact(n).zip(chunk).zip(means);
+            let falls = each.map(|((column, v), mean)| {
+                let (own, piece) = (column[v.at()], self.pieces.of_sector[*v]);
+                let here = column.iter().zip(self.pieces.of_sector.iter());
+                let at = |(g, &of)| own - if of == piece { g } else { &mean };
+                Response(here.map(|g| at(g) as f32).collect())
             });
             falls.collect::<Vec<_>>()
         };
         at.par_chunks(BATCH).flat_map_iter(of_chunk).collect()
+    }
+
+    /// Overwrites `P e`, for a unit of index at a sector, with `M T e`, where `T` is what [`Self::solve`] does: the means of both
+    /// sides follow from `P m`. Pins are left out; returns the mean of the solution for what is left, on the sector's piece.
+    fn weigh(&self, column: &mut [f64], v: Vertex) -> f64 {
+        let (piece, floating) = (self.pieces.of_sector[v], self.pieces.floating_area(v));
+        let (share, at_v) = floating.map_or((0.0, 0.0), |whole| {
+            let mean = self.mean_of_area[piece as usize];
+            (FRAC_PI_2 / whole, self.of_area[v.at()] - mean)
+        });
+        let sectors = self.area.iter().zip(&self.of_area).zip(self.pieces.of_sector.iter());
+        let mut sum = 0.0;
+        for (u, ((m, h), &of)) in column.iter_mut().zip(sectors) {
+            *u = if of == piece { m * (*u - share * (h + at_v)) } else { 0.0 };
+            sum += h * *u;
+        }
+        self.hold(column);
+        floating.map_or(0.0, |whole| sum / whole)
     }
 
     /// Moves one unit of index between two sectors with these responses. The gradient is then off by a constant and by

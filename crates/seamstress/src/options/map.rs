@@ -125,7 +125,7 @@ pub struct MapOptions {
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
     pub fast: bool,
 
-    /// Leave out the polish that lowers the largest distortion (tau)
+    /// Leave out the polish that lowers the largest distortion (tau); quads along directions have none
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["polish_time", "max_energy_rise"]))]
     pub no_tau_polish: bool,
 
