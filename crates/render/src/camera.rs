@@ -159,8 +159,8 @@ impl Camera {
     pub(crate) fn fit(
         view: View,
         projection: Projection,
-        positions: &[Vec3],
-        faces: &[[u32; 3]],
+        (positions, faces): (&[Vec3], &[[u32; 3]]),
+        used: impl Iterator<Item = Vec3> + Clone,
         samples: [f64; 2],
         margin: f64,
     ) -> Result<Self, RenderError> {
@@ -178,7 +178,7 @@ impl Camera {
             reference: None,
             middle: samples.map(|s| 0.5 * s),
         };
-        let points = faces.iter().flatten().map(|&v| camera.axes(positions[v as usize]));
+        let points = used.map(|p| camera.axes(p));
         let usable = samples.map(|s| 0.5 * s * (1.0 - 2.0 * margin));
         match projection {
             Projection::Orthographic => {
@@ -272,6 +272,15 @@ mod tests {
         [[-1.0, -0.5, -0.3], [1.0, 0.5, 0.3], [-0.7, 0.5, -0.3], [1.0, -0.5, 0.3]];
     const FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 3, 1]];
 
+    fn fit(
+        view: View,
+        projection: Projection,
+        samples: [f64; 2],
+        margin: f64,
+    ) -> Result<Camera, RenderError> {
+        Camera::fit(view, projection, (&BOX, &FACES), BOX.into_iter(), samples, margin)
+    }
+
     #[test]
     fn every_view_fills_the_frame_and_no_more() {
         for projection in [Projection::default(), Projection::Orthographic] {
@@ -282,8 +291,7 @@ mod tests {
                 View::Direction([0.0, -1e-200, 0.0]),
                 View::Direction([1.0, 2.0, -3.0]),
             ] {
-                let camera =
-                    Camera::fit(view, projection, &BOX, &FACES, [300.0, 200.0], 0.05).unwrap();
+                let camera = fit(view, projection, [300.0, 200.0], 0.05).unwrap();
                 let seen = BOX.map(|p| camera.project(p));
                 let slack = [[15.0, 285.0], [10.0, 190.0]];
                 let mut touches = 0;
@@ -302,7 +310,7 @@ mod tests {
     fn up_stays_up_and_near_is_near() {
         for projection in [Projection::default(), Projection::Orthographic] {
             let view = View::Direction([0.0, 0.0, 1.0]);
-            let camera = Camera::fit(view, projection, &BOX, &FACES, [300.0, 200.0], 0.05).unwrap();
+            let camera = fit(view, projection, [300.0, 200.0], 0.05).unwrap();
             let origin = camera.project([0.0; 3]);
             assert!(camera.project([0.0, 0.1, 0.0]).y < origin.y);
             assert!(camera.project([0.1, 0.0, 0.0]).x > origin.x);
@@ -335,14 +343,7 @@ mod tests {
     #[test]
     fn no_direction_is_an_error() {
         for bad in [[0.0; 3], [f64::NAN, 0.0, 1.0]] {
-            let fit = Camera::fit(
-                View::Direction(bad),
-                Projection::Orthographic,
-                &BOX,
-                &FACES,
-                [9.0, 9.0],
-                0.0,
-            );
+            let fit = fit(View::Direction(bad), Projection::Orthographic, [9.0, 9.0], 0.0);
             assert!(matches!(fit, Err(RenderError::BadOption { name: "view", .. })));
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::Image;
 use crate::font::{BASE, CAPITAL, text_segments, text_width};
-use crate::image::{to_linear, to_srgb8};
+use crate::image::{SRGB, to_linear};
 use crate::palette::hex;
 
 /// The colour of words and marks.
@@ -102,7 +102,7 @@ impl Canvas {
 
     pub(crate) fn finish(self) -> Image {
         let mut bytes = self.picture.rgb8().to_vec();
-        bytes.extend(self.band.iter().flatten().map(|&c| to_srgb8(c)));
+        bytes.extend(self.band.iter().flatten().map(|&c| SRGB.byte(c)));
         Image::from_rows(self.size[0], self.picture.height() + self.size[1], bytes)
     }
 }

@@ -24,10 +24,11 @@ impl Pattern {
             if sides[k] < WIDEST && at[k].is_finite() {
                 let half = 0.5 * sides[k].max(NARROWEST);
                 let (low, high) = (at[k] - half, at[k] + half);
-                sign *= (signs_up_to(high) - signs_up_to(low)) / (high - low);
+                let per_width = 1.0 / (high - low);
+                sign *= (signs_up_to(high) - signs_up_to(low)) * per_width;
                 bare *= 1.0
                     - (lines_up_to(high, self.line_width) - lines_up_to(low, self.line_width))
-                        / (high - low);
+                        * per_width;
             } else {
                 sign = 0.0;
                 bare *= 1.0 - self.line_width;
@@ -43,14 +44,20 @@ impl Pattern {
 
 /// The integral from zero of the wave that is +1 on `[0, 1)` and -1 on `[1, 2)`.
 fn signs_up_to(x: f64) -> f64 {
-    1.0 - (x - 2.0 * (0.5 * x).floor() - 1.0).abs()
+    1.0 - (x - 2.0 * whole(0.5 * x) - 1.0).abs()
 }
 
 /// The integral, up to a constant, of the indicator of lines of the given width on the integers.
 fn lines_up_to(x: f64, width: f64) -> f64 {
     let shifted = x + 0.5 * width;
-    let whole = shifted.floor();
+    let whole = whole(shifted);
     whole * width + (shifted - whole).min(width)
+}
+
+/// The greatest whole number up to `x`, for numbers that fit: a conversion, where rounding is a call without SSE 4.1.
+fn whole(x: f64) -> f64 {
+    let toward_zero = f64::from(x as i32);
+    if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
 }
 
 /// UVs of a face in units of checks, moved by whole periods to where numbers are fine.

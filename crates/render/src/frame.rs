@@ -2,8 +2,9 @@
 
 use seamstress_parallel::prelude::*;
 
-use crate::image::to_srgb8;
-use crate::raster::{Band, EMPTY, FIRST_OVERLAY, Window};
+use crate::band::{Band, EMPTY, FIRST_OVERLAY, Marks, Seen};
+use crate::image::{SRGB, Srgb};
+use crate::raster::Window;
 use crate::{Image, RenderError};
 
 /// The longest side of a picture, in pixels.
@@ -13,7 +14,7 @@ const MAX_SUPERSAMPLING: u32 = 8;
 /// Samples in a band, unless a single row of pixels has more.
 const BAND_SAMPLES: usize = 1 << 20;
 /// Bands in a picture at least, as far as there are rows.
-const MIN_BANDS: usize = 32;
+const MIN_BANDS: usize = 64;
 
 /// The raster of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -24,10 +25,26 @@ pub(crate) struct Raster {
 
 /// What fills the samples.
 pub(crate) trait Painter: Sync {
+    /// Marks the pixels of a band that one colour is too little for: the others are looked at in their middle alone.
+    fn mark(&self, index: usize, marks: &mut Marks);
     /// Decides what each sample of the band shows.
-    fn draw(&self, band: &mut Band);
+    fn draw(&self, index: usize, band: &mut Band);
     /// What colours patches of samples, in linear light, by the id that they show.
     fn shader(&self) -> impl FnMut(u32, Patch) -> [f32; 3];
+}
+
+/// The items that may touch each band, in ascending order.
+#[derive(Debug)]
+pub(crate) struct ByBand {
+    /// Where the items of each band start; one more than there are bands.
+    starts: Vec<usize>,
+    items: Vec<u32>,
+}
+
+impl ByBand {
+    pub(crate) fn of(&self, band: usize) -> &[u32] {
+        &self.items[self.starts[band]..self.starts[band + 1]]
+    }
 }
 
 /// Samples of a pixel that are coloured together.
@@ -69,31 +86,72 @@ impl Raster {
         self.supersampling
     }
 
+    /// Rows of pixels in a band.
+    fn rows_per_band(&self) -> usize {
+        let [width, height] = self.size.map(|s| s as usize);
+        let samples = width * self.supersampling.pow(2) as usize;
+        (BAND_SAMPLES / samples).clamp(1, height.div_ceil(MIN_BANDS))
+    }
+
+    /// Sorts items by the bands that they may touch, by their least and greatest heights in samples.
+    pub(crate) fn by_band(&self, spans: impl Iterator<Item = (f64, f64)> + Clone) -> ByBand {
+        let rows = self.rows_per_band();
+        let bands = (self.size[1] as usize).div_ceil(rows);
+        let per_sample = 1.0 / (rows * self.supersampling as usize) as f64;
+        let band = |height: f64| ((height * per_sample) as usize).min(bands - 1);
+        let touched = move |(low, high): (f64, f64)| band(low)..=band(high);
+        let mut starts = vec![0; bands + 1];
+        for span in spans.clone() {
+            touched(span).for_each(|band| starts[band + 1] += 1);
+        }
+        for band in 0..bands {
+            starts[band + 1] += starts[band];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![0; starts[bands]];
+        for (item, span) in (0..).zip(spans) {
+            for band in touched(span) {
+                items[next[band]] = item;
+                next[band] += 1;
+            }
+        }
+        ByBand { starts, items }
+    }
+
     /// Draws all bands, each on its own, so that the threads leave no trace in the result.
     pub(crate) fn compose(&self, painter: &impl Painter) -> Image {
         let [width, height] = self.size.map(|s| s as usize);
+        let rows = self.rows_per_band();
         let factor = self.supersampling as usize;
-        let rows = (BAND_SAMPLES / (width * factor * factor)).clamp(1, height.div_ceil(MIN_BANDS));
+        let side = factor as f64;
+        let srgb: &Srgb = &SRGB;
         let mut pixels = vec![0; 3 * width * height];
         pixels.par_chunks_mut(3 * width * rows).enumerate().for_each(|(index, bytes)| {
-            let count = bytes.len() / (3 * width);
-            let mut band = Band::new(Window {
-                width: width * factor,
-                first_row: index * rows * factor,
-                rows: count * factor,
-            });
-            painter.draw(&mut band);
+            let rows = bytes.len() / (3 * width);
+            let window = Window { width, first_row: index * self.rows_per_band(), rows };
+            let mut marks = Marks::new(window, factor);
+            painter.mark(index, &mut marks);
+            let mut band = Band::new(marks);
+            painter.draw(index, &mut band);
             let mut shader = painter.shader();
-            let mut ids = vec![EMPTY; factor * factor];
-            for (index, pixel) in bytes.chunks_mut(3).enumerate() {
-                let corner = [index % width * factor, index / width * factor];
-                for (row, ids) in ids.chunks_mut(factor).enumerate() {
-                    let samples = &band.ids(corner[1] + row)[corner[0]..];
-                    ids.copy_from_slice(&samples[..factor]);
+            let empty = shader(EMPTY, Patch { at: [0.0; 2], side }).map(|c| srgb.byte(c));
+            for (row, line) in bytes.chunks_exact_mut(3 * width).enumerate() {
+                let top = band.top(row);
+                let seen = band.row(row).zip(line.as_chunks_mut::<3>().0);
+                for (column, (seen, pixel)) in seen.enumerate() {
+                    let corner = [(column * factor) as f64, top];
+                    let color = match seen {
+                        Seen::One(EMPTY) => {
+                            *pixel = empty;
+                            continue;
+                        }
+                        Seen::One(id) => {
+                            shader(id, Patch { at: corner.map(|x| x + 0.5 * side), side })
+                        }
+                        Seen::Samples(ids) => pixel_color(ids, factor, corner, &mut shader),
+                    };
+                    *pixel = color.map(|c| srgb.byte(c));
                 }
-                let corner = [corner[0] as f64, band.centre(corner[1]) - 0.5];
-                let color = pixel_color(&ids, factor, corner, &mut shader);
-                pixel.copy_from_slice(&color.map(to_srgb8));
             }
         });
         Image::from_rows(self.size[0], self.size[1], pixels)
@@ -102,7 +160,7 @@ impl Raster {
 
 /// The mean colour of a pixel, of which `ids` has `factor` rows of samples and `corner` is the upper left corner.
 ///
-/// Light and texture change little within a pixel, so the samples that show one face get one colour; those of overlays,
+/// Light and texture change little within a face, so the samples that show one get one colour; those of overlays,
 /// which may be smaller than a pixel, get one each.
 fn pixel_color(
     ids: &[u32],

@@ -1,6 +1,7 @@
 //! The finished picture, and the way from linear light to bytes.
 
 use std::io::Write;
+use std::sync::LazyLock;
 
 use crate::RenderError;
 
@@ -80,20 +81,46 @@ impl Image {
     }
 }
 
-/// Linear light to a byte of sRGB (IEC 61966-2-1).
-pub(crate) fn to_srgb8(linear: f32) -> u8 {
-    let c = linear.clamp(0.0, 1.0);
-    let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * s + 0.5) as u8
+/// From linear light to bytes of sRGB (IEC 61966-2-1), by a table: powers cost more than all else of a pixel.
+pub(crate) struct Srgb {
+    /// The least linear light of each byte.
+    least: [f32; 256],
+    /// The byte at the lower end of each of as many equal parts of `0..=1`.
+    at_part: [u8; PARTS + 1],
+}
+
+/// Parts of the table: more would save no step, and less cost some in the dark.
+const PARTS: usize = 1024;
+
+/// The table, made when it is first asked for.
+pub(crate) static SRGB: LazyLock<Srgb> = LazyLock::new(|| {
+    let least = std::array::from_fn(|byte| match byte {
+        0 => f32::NEG_INFINITY,
+        _ => linear((byte as f64 - 0.5) / 255.0) as f32,
+    });
+    let below = |part: usize| least.partition_point(|&c| c <= part as f32 / PARTS as f32);
+    Srgb { least, at_part: std::array::from_fn(|part| (below(part) - 1) as u8) }
+});
+
+impl Srgb {
+    pub(crate) fn byte(&self, light: f32) -> u8 {
+        let part = (light.clamp(0.0, 1.0) * PARTS as f32) as usize;
+        let mut byte = self.at_part[part];
+        while byte < u8::MAX && self.least[usize::from(byte) + 1] <= light {
+            byte += 1;
+        }
+        byte
+    }
+}
+
+/// One value of sRGB in `0..=1` to linear light.
+fn linear(s: f64) -> f64 {
+    if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
 }
 
 /// A display colour, sRGB in `0..=1`, to linear light.
 pub(crate) fn to_linear(srgb: [f64; 3]) -> [f32; 3] {
-    srgb.map(|s| {
-        let s = s.clamp(0.0, 1.0);
-        let c = if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
-        c as f32
-    })
+    srgb.map(|s| linear(s.clamp(0.0, 1.0)) as f32)
 }
 
 #[cfg(test)]
@@ -104,8 +131,20 @@ mod tests {
     fn bytes_survive_the_way_to_linear_light_and_back() {
         for byte in 0..=255_u8 {
             let linear = to_linear([f64::from(byte) / 255.0; 3]);
-            assert_eq!(to_srgb8(linear[0]), byte);
+            assert_eq!(SRGB.byte(linear[0]), byte);
         }
+    }
+
+    #[test]
+    fn light_becomes_the_nearest_byte() {
+        for k in -1000..=201_000 {
+            let light = k as f32 / 200_000.0;
+            let c = f64::from(light).clamp(0.0, 1.0);
+            let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+            let off = 255.0 * s - f64::from(SRGB.byte(light));
+            assert!(off.abs() < 0.5001, "{light}: {off}");
+        }
+        assert_eq!([f32::NAN, f32::INFINITY].map(|c| SRGB.byte(c)), [0, 255]);
     }
 
     #[test]

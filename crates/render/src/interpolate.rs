@@ -44,7 +44,7 @@ impl Barycentric {
 
     /// The heights of the triangle over its three edges, in samples.
     pub(crate) fn heights(&self) -> [f64; 3] {
-        self.gradient.map(|[x, y]| 1.0 / x.hypot(y))
+        self.gradient.map(|[x, y]| 1.0 / (x * x + y * y).sqrt())
     }
 
     pub(crate) fn at(&self, x: f64, y: f64) -> Weights {

@@ -1,12 +1,13 @@
 //! The picture of a map in the plane of its UVs.
 
-use crate::frame::{Painter, Patch, Raster};
+use crate::band::{Band, EMPTY, FIRST_OVERLAY, Line, Marks};
+use crate::frame::{ByBand, Painter, Patch, Raster};
 use crate::image::to_linear;
 use crate::interpolate::Barycentric;
 use crate::normalize::Normalizer;
 use crate::paint::{Coat, FaceCoat, Paint, signed_area};
 use crate::palette::{Palette, hex};
-use crate::raster::{Band, EMPTY, FIRST_OVERLAY, ScreenPoint, range};
+use crate::raster::{ScreenPoint, range};
 use crate::scene::{Scene, check_finite};
 use crate::surface::{FEATURE_WIDTH, check_fractions};
 use crate::topology::{edges, matched_corners, next_corner, sorted_sides};
@@ -19,7 +20,7 @@ pub struct LayoutOptions {
     pub size: [u32; 2],
     /// The fill of the triangles.
     pub paint: Paint,
-    /// Samples along each side of a pixel, between 1 and 8.
+    /// Samples along each side of a pixel in which something ends, between 1 and 8.
     pub supersampling: u32,
     /// Free space on each side, as a fraction of the picture.
     pub margin: f64,
@@ -87,16 +88,15 @@ pub fn render_layout(scene: &Scene, options: &LayoutOptions) -> Result<Image, Re
 }
 
 struct LayoutPicture<'a> {
-    corners: Vec<[ScreenPoint; 3]>,
+    /// Where the corners of each face fall.
+    corners: Vec<[[f64; 2]; 3]>,
+    by_band: ByBand,
     flipped: Vec<u32>,
     coat: Coat<'a>,
-    outlines: Vec<[ScreenPoint; 2]>,
-    /// Both sides of each feature.
-    features: Vec<[ScreenPoint; 2]>,
-    /// The same of released ones.
-    released: Vec<[ScreenPoint; 2]>,
-    dots: Vec<(ScreenPoint, [f32; 3])>,
-    half_width: f64,
+    /// Both sides of each feature and seam.
+    lines: Vec<Line>,
+    lines_by_band: ByBand,
+    dots: Vec<([f64; 2], [f32; 3])>,
     edge_half_width: f64,
     edges_shown: f64,
     dot_radius: f64,
@@ -131,16 +131,26 @@ impl<'a> LayoutPicture<'a> {
         let corners: Vec<_> = plane.iter().map(|f| f.map(|uv| screen.project(uv))).collect();
         let faces = 0..plane.len() as u32;
         let shorter = raster.shorter_side();
+        let half_width = 0.5 * options.line_width * shorter;
+        let wide = FEATURE_WIDTH * half_width;
+        let line = |half_width, id| {
+            move |ends: [[f64; 2]; 2]| Line { ends: ends.map(at_depth(1.0)), half_width, id }
+        };
+        let place = |corner: u32| corners[corner as usize / 3][corner as usize % 3];
+        let along = |edges| sides_along(edges, scene.faces, &corners).into_iter();
+        let lines: Vec<Line> = along(scene.features)
+            .map(line(wide, FEATURE))
+            .chain(
+                outlines(scene, &plane).map(|ends| ends.map(place)).map(line(half_width, OUTLINE)),
+            )
+            .chain(along(scene.released).map(line(wide, RELEASED)))
+            .collect();
         Ok(Self {
             flipped: faces.filter(|&f| signed_area(plane[f as usize]) < 0.0).collect(),
             coat: options.paint.prepare(scene, &positions)?,
-            outlines: outlines(scene, &plane)
-                .map(|[a, b]| [a, b].map(|c| corners[c as usize / 3][c as usize % 3]))
-                .collect(),
-            features: sides_along(scene.features, scene.faces, &corners),
-            released: sides_along(scene.released, scene.faces, &corners),
+            lines_by_band: raster.by_band(lines.iter().map(Line::span)),
+            lines,
             dots: dots(scene, &corners, &options.palette),
-            half_width: 0.5 * options.line_width * shorter,
             edge_half_width: 0.5 * options.edge_width * shorter,
             edges_shown: fade_in(
                 mean_size(&corners) / f64::from(raster.per_pixel()),
@@ -154,6 +164,7 @@ impl<'a> LayoutPicture<'a> {
             released_color: to_linear(options.palette.released),
             edge: to_linear(options.palette.edge),
             flipped_color: to_linear(options.palette.flipped),
+            by_band: raster.by_band(corners.iter().map(|c| range(c.map(|p| p[1])))),
             corners,
         })
     }
@@ -184,13 +195,8 @@ impl Screen {
         }
     }
 
-    fn project(&self, [u, v]: [f64; 2]) -> ScreenPoint {
-        ScreenPoint {
-            x: self.offset[0] + self.scale * u,
-            y: self.offset[1] - self.scale * v,
-            depth: 0.0,
-            inverse_w: 1.0,
-        }
+    fn project(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [self.offset[0] + self.scale * u, self.offset[1] - self.scale * v]
     }
 }
 
@@ -227,8 +233,8 @@ fn outlines<'b>(
 fn sides_along(
     edges: &[[u32; 2]],
     faces: &[[u32; 3]],
-    corners: &[[ScreenPoint; 3]],
-) -> Vec<[ScreenPoint; 2]> {
+    corners: &[[[f64; 2]; 3]],
+) -> Vec<[[f64; 2]; 2]> {
     if edges.is_empty() {
         return Vec::new();
     }
@@ -249,11 +255,7 @@ fn sides_along(
 }
 
 /// The places and colours of the cones, at every corner of theirs.
-fn dots(
-    scene: &Scene,
-    corners: &[[ScreenPoint; 3]],
-    palette: &Palette,
-) -> Vec<(ScreenPoint, [f32; 3])> {
+fn dots(scene: &Scene, corners: &[[[f64; 2]; 3]], palette: &Palette) -> Vec<([f64; 2], [f32; 3])> {
     let mut cones = scene.cones.to_vec();
     cones.sort_unstable();
     let mut dots = Vec::new();
@@ -268,35 +270,47 @@ fn dots(
 }
 
 impl Painter for LayoutPicture<'_> {
-    fn draw(&self, band: &mut Band) {
-        for (face, &corners) in self.corners.iter().enumerate() {
-            let (low, high) = range(corners.map(|p| p.y));
-            if band.meets(low, high) {
-                band.fill_triangle(corners, face as u32);
-            }
+    fn mark(&self, index: usize, marks: &mut Marks) {
+        // The texture is that of the plane, and goes on from face to face.
+        if matches!(self.coat, Coat::PerFace(_)) {
+            let faces = self.by_band.of(index).iter().map(|&face| self.corners[face as usize]);
+            faces.for_each(|face| marks.triangle(face.map(at_depth(0.0))));
         }
         for &face in &self.flipped {
-            let corners = self.corners[face as usize];
-            let raised = corners.map(|p| ScreenPoint { depth: 1.0, ..p });
+            let corners = self.corners[face as usize].map(at_depth(0.0));
+            marks.triangle(corners);
+            (0..3).for_each(|k| marks.line([corners[k], corners[(k + 1) % 3]], self.rim()));
+        }
+        for &line in self.lines_by_band.of(index) {
+            let line = &self.lines[line as usize];
+            marks.line(line.ends, line.half_width);
+        }
+        for &(centre, _) in &self.dots {
+            marks.ball(at_depth(0.0)(centre), self.dot_radius);
+        }
+    }
+
+    fn draw(&self, index: usize, band: &mut Band) {
+        for &face in self.by_band.of(index) {
+            band.fill_triangle(self.corners[face as usize].map(at_depth(0.0)), face);
+        }
+        for &face in &self.flipped {
+            let raised = self.corners[face as usize].map(at_depth(1.0));
             band.fill_triangle(raised, FLIPPED);
             for k in 0..3 {
                 let ends = [raised[k], raised[(k + 1) % 3]];
-                band.draw_line(ends, 0.5 * self.per_pixel, FLIPPED, |_, _, _| 0.0);
+                band.draw_line(ends, self.rim(), FLIPPED, |_, _, _| 0.0);
             }
         }
-        if self.half_width > 0.0 {
-            let mut line = |ends: [ScreenPoint; 2], half_width, id| {
-                let ends = ends.map(|p| ScreenPoint { depth: 1.0, ..p });
-                band.draw_line(ends, half_width, id, |_, _, _| 0.0);
-            };
-            let wide = FEATURE_WIDTH * self.half_width;
-            self.features.iter().for_each(|&ends| line(ends, wide, FEATURE));
-            self.outlines.iter().for_each(|&ends| line(ends, self.half_width, OUTLINE));
-            self.released.iter().for_each(|&ends| line(ends, wide, RELEASED));
+        for &line in self.lines_by_band.of(index) {
+            let line = &self.lines[line as usize];
+            if line.half_width > 0.0 {
+                band.draw_line(line.ends, line.half_width, line.id, |_, _, _| 0.0);
+            }
         }
         if self.dot_radius > 0.0 {
             for (index, (centre, _)) in self.dots.iter().enumerate() {
-                let centre = ScreenPoint { depth: 2.0, ..*centre };
+                let centre = at_depth(2.0)(*centre);
                 band.draw_ball(centre, self.dot_radius, 0.0, FIRST_OVERLAY + index as u32);
             }
         }
@@ -314,10 +328,13 @@ impl Painter for LayoutPicture<'_> {
             dot if dot >= FIRST_OVERLAY => {
                 let (centre, color) = self.dots[(dot - FIRST_OVERLAY) as usize];
                 let [x, y] = patch.at;
-                let reach = (x - centre.x).hypot(y - centre.y);
+                let reach = (x - centre[0]).hypot(y - centre[1]);
                 if reach > 0.8 * self.dot_radius { self.background } else { color }
             }
             face => {
+                if let (Coat::Plain(color), true) = (&self.coat, self.edges_shown == 0.0) {
+                    return *color;
+                }
                 if face != current {
                     current = face;
                     shader = self.on_face(face as usize);
@@ -338,13 +355,18 @@ struct Shader<'a> {
     coat: FaceCoat<'a>,
 }
 
+/// Points of the plane over it.
+fn at_depth(depth: f64) -> impl Fn([f64; 2]) -> ScreenPoint {
+    move |[x, y]| ScreenPoint { x, y, depth, inverse_w: 1.0 }
+}
+
 /// The area of a triangle in samples.
-fn screen_area(corners: [ScreenPoint; 3]) -> f64 {
-    0.5 * signed_area(corners.map(|p| [p.x, p.y])).abs()
+fn screen_area(corners: [[f64; 2]; 3]) -> f64 {
+    0.5 * signed_area(corners).abs()
 }
 
 /// The mean over the layout of the sizes of the triangles that lie there, in samples.
-fn mean_size(corners: &[[ScreenPoint; 3]]) -> f64 {
+fn mean_size(corners: &[[[f64; 2]; 3]]) -> f64 {
     let areas = corners.iter().map(|&c| screen_area(c));
     let (sum, area) = areas.fold((0.0, 0.0), |(s, t), a| (s + a * a.sqrt(), t + a));
     if area > 0.0 { sum / area } else { 0.0 }
@@ -357,8 +379,13 @@ fn fade_in(x: f64, [low, high]: [f64; 2]) -> f64 {
 }
 
 impl LayoutPicture<'_> {
+    /// Half the width of the rims of flipped triangles.
+    fn rim(&self) -> f64 {
+        0.5 * self.per_pixel
+    }
+
     fn on_face(&self, face: usize) -> Option<Shader<'_>> {
-        let barycentric = Barycentric::new(self.corners[face])?;
+        let barycentric = Barycentric::new(self.corners[face].map(at_depth(0.0)))?;
         let heights = barycentric.heights();
         let pixels = screen_area(self.corners[face]).sqrt() / self.per_pixel;
         Some(Shader {

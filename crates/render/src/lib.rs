@@ -2,9 +2,11 @@
 //!
 //! Two pictures of one [`Scene`]: [`render_surface`] shows the mesh in space, shaded and textured
 //! through its UVs; [`render_layout`] shows the UVs in the plane. Both are drawn in software by a
-//! z-buffer of samples, averaged in linear light, and depend on nothing but their arguments: the
+//! z-buffer, with several samples, averaged in linear light, in pixels that an outline, a crease, a line
+//! or a dot crosses, and one in all others. They depend on nothing but their arguments: the
 //! same scene gives the same bytes on any number of threads.
 
+mod band;
 mod camera;
 mod canvas;
 mod checker;
@@ -35,4 +37,4 @@ pub use layout::{LayoutOptions, render_layout};
 pub use paint::Paint;
 pub use palette::Palette;
 pub use scene::Scene;
-pub use surface::{SurfaceOptions, render_surface};
+pub use surface::{SurfaceOptions, render_both, render_surface};

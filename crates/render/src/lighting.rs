@@ -32,7 +32,8 @@ impl Lights {
 
     /// The light on a surface whose unit normal is turned to the viewer.
     pub(crate) fn on(&self, normal: Vec3) -> f32 {
-        let wrapped = |light: Vec3| ((dot(normal, light) + WRAP) / (1.0 + WRAP)).max(0.0);
+        const SCALE: f64 = 1.0 / (1.0 + WRAP);
+        let wrapped = |light: Vec3| ((dot(normal, light) + WRAP) * SCALE).max(0.0);
         let sky = 0.5 + 0.5 * normal[1];
         let ambient = GROUND + (SKY - GROUND) * sky;
         // Edges that turn away darken a little, which sets them off against white.

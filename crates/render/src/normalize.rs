@@ -4,9 +4,11 @@
 /// origin whose longest side lies in `[1, 2]`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Normalizer<const N: usize> {
-    first: i32,
+    first: PowerOfTwo,
     center: [f64; N],
-    second: i32,
+    second: PowerOfTwo,
+    /// The exponent of both.
+    exponent: i32,
 }
 
 impl<const N: usize> Normalizer<N> {
@@ -16,33 +18,35 @@ impl<const N: usize> Normalizer<N> {
         if largest == 0.0 {
             return None;
         }
-        let first = -exponent(largest);
+        let first_exponent = -exponent(largest);
+        let first = PowerOfTwo::new(first_exponent);
         let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
         for point in points {
             for k in 0..N {
-                let x = times_power_of_two(point[k], first);
+                let x = first.times(point[k]);
                 low[k] = low[k].min(x);
                 high[k] = high[k].max(x);
             }
         }
         let extent = (0..N).fold(0.0_f64, |m, k| m.max(high[k] - low[k]));
-        (extent > 0.0).then(|| Self {
-            first,
-            center: std::array::from_fn(|k| 0.5 * (low[k] + high[k])),
-            second: -exponent(extent),
+        (extent > 0.0).then(|| {
+            let second_exponent = -exponent(extent);
+            Self {
+                first,
+                center: std::array::from_fn(|k| 0.5 * (low[k] + high[k])),
+                second: PowerOfTwo::new(second_exponent),
+                exponent: first_exponent + second_exponent,
+            }
         })
     }
 
     pub(crate) fn apply(&self, point: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|k| {
-            let x = times_power_of_two(point[k], self.first);
-            times_power_of_two(x - self.center[k], self.second)
-        })
+        std::array::from_fn(|k| self.second.times(self.first.times(point[k]) - self.center[k]))
     }
 
     /// The length, in the original units, of a normalised length.
     pub(crate) fn length_back(&self, length: f64) -> f64 {
-        times_power_of_two(length, -(self.first + self.second))
+        PowerOfTwo::new(-self.exponent).times(length)
     }
 }
 
@@ -51,10 +55,19 @@ fn exponent(x: f64) -> i32 {
     x.log2().floor() as i32
 }
 
-/// `x * 2^e` without an overflow on the way.
-fn times_power_of_two(x: f64, e: i32) -> f64 {
-    let half = e / 2;
-    x * 2.0_f64.powi(half) * 2.0_f64.powi(e - half)
+/// A power of two as two factors, so that none overflows.
+#[derive(Debug, Clone, Copy)]
+struct PowerOfTwo([f64; 2]);
+
+impl PowerOfTwo {
+    fn new(exponent: i32) -> Self {
+        let half = exponent / 2;
+        Self([2.0_f64.powi(half), 2.0_f64.powi(exponent - half)])
+    }
+
+    fn times(self, x: f64) -> f64 {
+        x * self.0[0] * self.0[1]
+    }
 }
 
 #[cfg(test)]
@@ -66,12 +79,12 @@ mod tests {
         let square = [[0.25, 0.5], [1.25, 0.5], [1.25, 1.5]];
         let reference = Normalizer::fit(square.iter().copied()).unwrap();
         for e in [-1000, -660, 0, 660, 1000] {
-            let scaled = square.map(|p| p.map(|x| times_power_of_two(x, e)));
+            let scaled = square.map(|p| p.map(|x| PowerOfTwo::new(e).times(x)));
             let normalizer = Normalizer::fit(scaled.iter().copied()).unwrap();
             for (p, q) in square.iter().zip(scaled) {
                 assert_eq!(reference.apply(*p), normalizer.apply(q));
             }
-            assert_eq!(normalizer.length_back(1.0), times_power_of_two(1.0, e));
+            assert_eq!(normalizer.length_back(1.0), PowerOfTwo::new(e).times(1.0));
         }
     }
 

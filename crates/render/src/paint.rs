@@ -147,7 +147,25 @@ pub(crate) enum FaceCoat<'a> {
     Checker { pattern: &'a Pattern, checks: [[f64; 2]; 3] },
 }
 
+/// Textures that are apart by less than this, in checks, go on.
+const SAME_CHECK: f64 = 1e-3;
+
 impl Coat<'_> {
+    /// Whether the paint goes on smoothly from one face to another where these corners of theirs meet.
+    pub(crate) fn goes_on(&self, corners: [u32; 2]) -> bool {
+        match self {
+            Self::Plain(_) => true,
+            Self::PerFace(colors) => {
+                let [a, b] = corners.map(|corner| colors[corner as usize / 3]);
+                a == b
+            }
+            Self::Checker { period, uvs, .. } => {
+                let [a, b] = corners.map(|corner| uvs[corner as usize]);
+                (0..2).all(|k| (a[k] - b[k]).abs() <= SAME_CHECK * period)
+            }
+        }
+    }
+
     pub(crate) fn on_face(&self, face: usize) -> FaceCoat<'_> {
         match self {
             Self::Plain(color) => FaceCoat::Plain(*color),

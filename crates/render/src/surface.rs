@@ -1,18 +1,19 @@
 //! The picture of a surface in space.
 
+use crate::band::{Band, EMPTY, FIRST_OVERLAY, Line, Marks};
 use crate::camera::{Camera, Projection, Up, View};
-use crate::frame::{Painter, Patch, Raster};
+use crate::frame::{ByBand, Painter, Patch, Raster};
 use crate::image::to_linear;
 use crate::interpolate::{Barycentric, blend};
 use crate::lighting::Lights;
 use crate::normalize::Normalizer;
-use crate::normals::corner_normals;
-use crate::occlusion::Openness;
+use crate::normals::{Normals, SmoothEdge};
+use crate::occlusion::{Openness, Sky};
 use crate::paint::{Coat, FaceCoat, Paint, signed_area};
 use crate::palette::Palette;
-use crate::raster::{Band, EMPTY, FIRST_OVERLAY, ScreenPoint, range};
+use crate::raster::{ScreenPoint, range};
 use crate::scene::{Scene, check_finite};
-use crate::vec3::{Vec3, add, scale, unit};
+use crate::vec3::{Vec3, add, dot, scale};
 use crate::{Image, RenderError};
 
 /// How a surface is shown.
@@ -28,7 +29,7 @@ pub struct SurfaceOptions {
     pub projection: Projection,
     /// The colour of the surface.
     pub paint: Paint,
-    /// Samples along each side of a pixel, between 1 and 8.
+    /// Samples along each side of a pixel in which something ends, between 1 and 8.
     pub supersampling: u32,
     /// Free space on each side, as a fraction of the picture.
     pub margin: f64,
@@ -85,21 +86,21 @@ const RELEASED: u32 = EMPTY - 3;
 /// If the scene is empty or inconsistent, if an option is out of range, or if the paint needs
 /// UVs and the scene has none.
 pub fn render_surface(scene: &Scene, options: &SurfaceOptions) -> Result<Image, RenderError> {
-    scene.check()?;
-    let raster = Raster::new(options.size, options.supersampling)?;
-    if !(0.0..=1.0).contains(&options.occlusion) {
-        return Err(RenderError::BadOption { name: "occlusion", requirement: "between 0 and 1" });
-    }
-    check_fractions([
-        ("margin", options.margin),
-        ("line_width", options.line_width),
-        ("cone_radius", options.cone_radius),
-    ])?;
-    for (name, color) in options.palette.entries() {
-        check_finite(name, &[color])?;
-    }
-    let picture = SurfacePicture::new(scene, options, raster)?;
-    Ok(raster.compose(&picture))
+    Model::new(scene, options)?.draw(options.view)
+}
+
+/// Draws the surface of a scene from two sides, in place of the view of the options; what does not depend on the view
+/// is prepared once.
+///
+/// # Errors
+/// Those of [`render_surface`].
+pub fn render_both(
+    scene: &Scene,
+    options: &SurfaceOptions,
+    [first, second]: [View; 2],
+) -> Result<[Image; 2], RenderError> {
+    let model = Model::new(scene, options)?;
+    Ok([model.draw(first)?, model.draw(second)?])
 }
 
 /// Fractions of the picture must leave something of it.
@@ -112,13 +113,6 @@ pub(crate) fn check_fractions<const N: usize>(
     }
 }
 
-/// A line on the surface, as it falls on the screen.
-struct Line {
-    ends: [ScreenPoint; 2],
-    half_width: f64,
-    id: u32,
-}
-
 /// A ball on a vertex, as it falls on the screen.
 struct Ball {
     centre: ScreenPoint,
@@ -127,17 +121,74 @@ struct Ball {
     color: [f32; 3],
 }
 
-struct SurfacePicture<'a> {
-    faces: &'a [[u32; 3]],
-    points: Vec<ScreenPoint>,
-    /// First and last row of samples each face may touch.
-    spans: Vec<[f32; 2]>,
-    normals: Vec<[[f32; 3]; 3]>,
+/// What pictures from all sides share.
+struct Model<'a> {
+    scene: &'a Scene<'a>,
+    options: &'a SurfaceOptions,
+    raster: Raster,
+    positions: Vec<Vec3>,
+    /// Whether each vertex has a face.
+    on_face: Vec<bool>,
+    normals: Normals,
     coat: Coat<'a>,
+    sky: Option<Sky>,
+}
+
+impl<'a> Model<'a> {
+    fn new(scene: &'a Scene, options: &'a SurfaceOptions) -> Result<Self, RenderError> {
+        scene.check()?;
+        let raster = Raster::new(options.size, options.supersampling)?;
+        if !(0.0..=1.0).contains(&options.occlusion) {
+            return Err(RenderError::BadOption {
+                name: "occlusion",
+                requirement: "between 0 and 1",
+            });
+        }
+        check_fractions([
+            ("margin", options.margin),
+            ("line_width", options.line_width),
+            ("cone_radius", options.cone_radius),
+        ])?;
+        for (name, color) in options.palette.entries() {
+            check_finite(name, &[color])?;
+        }
+        let mut on_face = vec![false; scene.positions.len()];
+        scene.faces.iter().flatten().for_each(|&v| on_face[v as usize] = true);
+        let used = scene.positions.iter().zip(&on_face).filter(|(_, used)| **used);
+        let normalizer = Normalizer::fit(used.map(|(&p, _)| p))
+            .ok_or(RenderError::NoExtent { what: "positions" })?;
+        let place = |&p: &Vec3| options.up.turn(normalizer.apply(p));
+        let positions: Vec<Vec3> = scene.positions.iter().map(place).collect();
+        let coat = options.paint.prepare(scene, &positions)?;
+        Ok(Self {
+            normals: Normals::new(&positions, scene.faces, |corners| coat.goes_on(corners)),
+            sky: (options.occlusion > 0.0).then(|| Sky::new(&positions, scene.faces)),
+            scene,
+            options,
+            raster,
+            positions,
+            on_face,
+            coat,
+        })
+    }
+
+    fn draw(&self, view: View) -> Result<Image, RenderError> {
+        Ok(self.raster.compose(&SurfacePicture::new(self, view)?))
+    }
+}
+
+struct SurfacePicture<'a> {
+    model: &'a Model<'a>,
+    points: Vec<ScreenPoint>,
     camera: Camera,
     lights: Lights,
-    occlusion: Option<(Openness, f64)>,
+    openness: Option<Openness<'a>>,
+    faces_by_band: ByBand,
+    /// Edges where light, texture or the sight of the surface ends.
+    ends: Vec<[u32; 2]>,
+    ends_by_band: ByBand,
     lines: Vec<Line>,
+    lines_by_band: ByBand,
     balls: Vec<Ball>,
     background: [f32; 3],
     seam: [f32; 3],
@@ -146,33 +197,19 @@ struct SurfacePicture<'a> {
 }
 
 impl<'a> SurfacePicture<'a> {
-    fn new(
-        scene: &Scene<'a>,
-        options: &SurfaceOptions,
-        raster: Raster,
-    ) -> Result<Self, RenderError> {
-        let used = scene.faces.iter().flatten();
-        let normalizer = Normalizer::fit(used.map(|&v| scene.positions[v as usize]))
-            .ok_or(RenderError::NoExtent { what: "positions" })?;
-        let place = |&p: &Vec3| options.up.turn(normalizer.apply(p));
-        let positions: Vec<Vec3> = scene.positions.iter().map(place).collect();
+    fn new(model: &'a Model<'a>, view: View) -> Result<Self, RenderError> {
+        let Model { scene, options, raster, positions, on_face, normals, .. } = model;
         let camera = Camera::fit(
-            options.view,
+            view,
             options.projection,
-            &positions,
-            scene.faces,
+            (positions, scene.faces),
+            positions.iter().zip(on_face).filter(|(_, used)| **used).map(|(&p, _)| p),
             raster.samples(),
             options.margin,
         )?;
         let points: Vec<ScreenPoint> = positions.iter().map(|&p| camera.project(p)).collect();
         let at = |v: u32| points[v as usize];
-        let mut on_face = vec![false; positions.len()];
-        scene.faces.iter().flatten().for_each(|&v| on_face[v as usize] = true);
         let seen = |v: &u32| on_face[*v as usize];
-        let spans = scene.faces.iter().map(|f| {
-            let (low, high) = range(f.map(|v| at(v).y));
-            [(low - 1.0) as f32, (high + 1.0) as f32]
-        });
         let half_width = 0.5 * options.line_width * raster.shorter_side();
         let lines = |list: &'a [[u32; 2]], id, half_width| {
             let seen = list.iter().filter(|s| s.iter().all(seen));
@@ -180,9 +217,10 @@ impl<'a> SurfacePicture<'a> {
                 .filter(|l| l.half_width > 0.0)
         };
         let wide = FEATURE_WIDTH * half_width;
-        let lines = lines(scene.features, FEATURE, wide)
+        let lines: Vec<Line> = lines(scene.features, FEATURE, wide)
             .chain(lines(scene.seams, SEAM, half_width))
-            .chain(lines(scene.released, RELEASED, wide));
+            .chain(lines(scene.released, RELEASED, wide))
+            .collect();
         let palette = &options.palette;
         let ball_radius = options.cone_radius * raster.shorter_side();
         let small = CORNER_RADIUS * ball_radius;
@@ -197,41 +235,50 @@ impl<'a> SurfacePicture<'a> {
             let depth = centre.depth + BALL_LIFT * bulge;
             Ball { centre: ScreenPoint { depth, ..centre }, radius, bulge, color: to_linear(color) }
         });
-        let mut normals = corner_normals(&positions, scene.faces);
-        // Faces seen from behind are lit as if they were turned around.
-        for (normals, face) in normals.iter_mut().zip(scene.faces) {
-            if signed_area(face.map(|v| [at(v).x, at(v).y])) > 0.0 {
-                *normals = normals.map(|n| n.map(|x| -x));
-            }
-        }
-        let openness = |strength| (Openness::new(&positions, scene.faces, &normals), strength);
+        let to_viewer = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(at);
+            let area = signed_area([a, b, c].map(|p| [p.x, p.y]));
+            area.partial_cmp(&0.0)
+        };
+        let to_viewer: Vec<_> = scene.faces.iter().map(to_viewer).collect();
+        let silhouette = |edge: &&SmoothEdge| {
+            let [a, b] = edge.faces.map(|face| to_viewer[face as usize]);
+            a != b
+        };
+        let silhouettes = normals.smooth.iter().filter(silhouette).map(|edge| edge.ends);
+        let ends: Vec<[u32; 2]> = normals.sharp.iter().copied().chain(silhouettes).collect();
         Ok(Self {
-            faces: scene.faces,
-            spans: spans.collect(),
-            coat: options.paint.prepare(scene, &positions)?,
+            model,
+            ends_by_band: raster.by_band(ends.iter().map(|end| {
+                let [a, b] = end.map(|v| at(v).y);
+                (a.min(b) - 1.0, a.max(b) + 1.0)
+            })),
+            ends,
             lights: Lights::new(&camera),
-            lines: lines.collect(),
+            openness: model.sky.as_ref().map(Sky::openness),
+            faces_by_band: raster
+                .by_band(scene.faces.iter().map(|face| range(face.map(|v| at(v).y)))),
+            lines_by_band: raster.by_band(lines.iter().map(Line::span)),
+            lines,
             balls: balls.collect(),
             background: to_linear(palette.background),
             seam: to_linear(palette.seam),
             feature: to_linear(palette.feature),
             released: to_linear(palette.released),
-            occlusion: Some(options.occlusion).filter(|&strength| strength > 0.0).map(openness),
-            normals,
             camera,
             points,
         })
     }
 
     fn corners(&self, face: usize) -> [ScreenPoint; 3] {
-        self.faces[face].map(|v| self.points[v as usize])
+        self.model.scene.faces[face].map(|v| self.points[v as usize])
     }
 
     /// By how much a line may lie behind the face at a sample: the face is followed from the
     /// sample to the middle of the line, as far as that is plausible.
     fn slack(&self, id: u32, dx: f64, dy: f64) -> f64 {
         let Some(barycentric) = Some(id as usize)
-            .filter(|&face| face < self.faces.len())
+            .filter(|&face| face < self.model.scene.faces.len())
             .and_then(|face| Barycentric::new(self.corners(face)))
         else {
             return LINE_SLACK;
@@ -259,31 +306,49 @@ impl<'a> SurfacePicture<'a> {
 struct Shader<'a> {
     face: usize,
     barycentric: Barycentric,
-    normals: [[f64; 3]; 3],
+    positions: [Vec3; 3],
+    normals: [Vec3; 3],
     coat: FaceCoat<'a>,
 }
 
 impl Shader<'_> {
+    fn normal(&self, weights: [f64; 3]) -> Vec3 {
+        let sum = blend(weights, &self.normals);
+        let square = dot(sum, sum);
+        if square > 1e-12 { scale(sum, 1.0 / square.sqrt()) } else { self.normals[0] }
+    }
+
     fn color(&self, picture: &SurfacePicture, Patch { at: [x, y], side }: Patch) -> [f32; 3] {
         let weights = self.barycentric.at(x, y);
-        let normal = unit(blend(weights.value, &self.normals)).unwrap_or(self.normals[0]);
-        let mut light = picture.lights.on(normal);
-        if let Some((openness, strength)) = &picture.occlusion {
-            let open = openness.at(self.face, weights.value);
-            light *= (1.0 - strength * (1.0 - open * open)) as f32;
+        let mut light = picture.lights.on(self.normal(weights.value));
+        if let Some(openness) = &picture.openness {
+            let open = openness.at(self.face, weights.value, |weights| {
+                (blend(weights, &self.positions), self.normal(weights))
+            });
+            light *= (1.0 - picture.model.options.occlusion * (1.0 - open * open)) as f32;
         }
         self.coat.color(&weights, side).map(|c| c * light)
     }
 }
 
 impl Painter for SurfacePicture<'_> {
-    fn draw(&self, band: &mut Band) {
-        for (face, &[low, high]) in self.spans.iter().enumerate() {
-            if band.meets(f64::from(low), f64::from(high)) {
-                band.fill_triangle(self.corners(face), face as u32);
-            }
+    fn mark(&self, index: usize, marks: &mut Marks) {
+        for &end in self.ends_by_band.of(index) {
+            marks.line(self.ends[end as usize].map(|v| self.points[v as usize]), 0.0);
         }
-        for line in &self.lines {
+        for &line in self.lines_by_band.of(index) {
+            let line = &self.lines[line as usize];
+            marks.line(line.ends, line.half_width);
+        }
+        self.balls.iter().for_each(|ball| marks.ball(ball.centre, ball.radius));
+    }
+
+    fn draw(&self, index: usize, band: &mut Band) {
+        for &face in self.faces_by_band.of(index) {
+            band.fill_triangle(self.corners(face as usize), face);
+        }
+        for &line in self.lines_by_band.of(index) {
+            let line = &self.lines[line as usize];
             band.draw_line(line.ends, line.half_width, line.id, |below, dx, dy| {
                 self.slack(below, dx, dy)
             });
@@ -317,11 +382,16 @@ impl Painter for SurfacePicture<'_> {
 
 impl SurfacePicture<'_> {
     fn on_face(&self, face: usize) -> Option<Shader<'_>> {
+        let Model { scene, positions, normals, coat, .. } = self.model;
+        let corners = self.corners(face);
+        // Faces seen from behind are lit as if they were turned around.
+        let turn = if signed_area(corners.map(|p| [p.x, p.y])) > 0.0 { -1.0 } else { 1.0 };
         Some(Shader {
             face,
-            barycentric: Barycentric::new(self.corners(face))?,
-            normals: self.normals[face].map(|n| n.map(f64::from)),
-            coat: self.coat.on_face(face),
+            barycentric: Barycentric::new(corners)?,
+            positions: scene.faces[face].map(|v| positions[v as usize]),
+            normals: normals.at_corners[face].map(|n| n.map(|x| turn * f64::from(x))),
+            coat: coat.on_face(face),
         })
     }
 }

@@ -14,16 +14,35 @@ pub(crate) fn next_corner(corner: u32) -> u32 {
     if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
-/// All sides of all faces, sorted so that the sides of one edge are neighbours.
+/// All sides of all faces, sorted so that the sides of one edge are neighbours: by counting to their smaller vertices,
+/// then the few of each vertex among themselves.
 pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(3 * faces.len());
-    for (face, corners) in faces.iter().enumerate() {
-        for k in 0..3 {
-            let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            sides.push(Side { vertices: [a.min(b), a.max(b)], corner: (3 * face + k) as u32 });
-        }
+    let all = || {
+        (0..).zip(faces).flat_map(|(face, corners): (u32, _)| {
+            (0..3).map(move |k| {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                Side { vertices: [a.min(b), a.max(b)], corner: 3 * face + k as u32 }
+            })
+        })
+    };
+    let vertices = faces.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    let mut ends = vec![0; vertices + 1];
+    all().for_each(|side| ends[side.vertices[0] as usize + 1] += 1);
+    for vertex in 0..vertices {
+        ends[vertex + 1] += ends[vertex];
     }
-    sides.sort_unstable();
+    let mut sides = vec![Side { vertices: [0; 2], corner: 0 }; 3 * faces.len()];
+    // What starts as the place of a vertex's first side comes to be the end of its last.
+    for side in all() {
+        let end = &mut ends[side.vertices[0] as usize];
+        sides[*end] = side;
+        *end += 1;
+    }
+    let mut start = 0;
+    for &end in &ends[..vertices] {
+        sides[start..end].sort_unstable();
+        start = end;
+    }
     sides
 }
 

@@ -11,7 +11,7 @@ use seamstress_mesh::soup;
 use seamstress_parametrize as method;
 use seamstress_render::{
     HeatMap, Image, LayoutOptions, Paint, RenderError, Scene, SurfaceOptions, Up, View,
-    render_layout, render_surface,
+    render_both, render_layout, render_surface,
 };
 use serde::{Deserialize, Serialize};
 
@@ -86,14 +86,20 @@ impl ViewOptions {
         [View::Direction(towards), View::Direction(towards.map(|x| -x))]
     }
 
-    /// Draws a scene from one of the sides.
-    fn draw(&self, scene: &Scene, view: View, paint: Paint) -> Result<Image, RenderError> {
+    /// How a surface is shown, from the first side where there is one picture.
+    fn options(&self, paint: Paint) -> SurfaceOptions {
         let up = match self.up {
             UpAxis::X => Up::X,
             UpAxis::Y => Up::Y,
             UpAxis::Z => Up::Z,
         };
-        render_surface(scene, &SurfaceOptions { up, view, paint, ..SurfaceOptions::default() })
+        let [view, _] = self.sides();
+        SurfaceOptions { up, view, paint, ..SurfaceOptions::default() }
+    }
+
+    /// Draws a scene from both sides.
+    fn draw_both(&self, scene: &Scene, paint: Paint) -> Result<[Image; 2], RenderError> {
+        render_both(scene, &self.options(paint), self.sides())
     }
 }
 
@@ -192,7 +198,7 @@ impl QuadMesh {
             self.irregular().iter().map(|v| (v.vertex, v.index)).collect();
         let polygons = || self.quads().iter().map(<[u32; 4]>::as_slice);
         let net = Net::new(self.positions(), polygons());
-        let image = net.draw(&irregular, Paint::plain(), view, view.sides()[0]);
+        let image = render_surface(&net.scene(&irregular), &view.options(Paint::plain()));
         image.and_then(|image| png(&image)).map_err(no_picture)
     }
 }
@@ -215,7 +221,7 @@ impl Surface {
             open_ends: features.map_or(&[], FeatureCurves::open_ends),
             ..Scene::default()
         };
-        let image = view.draw(&scene, view.sides()[0], Paint::plain());
+        let image = render_surface(&scene, &view.options(Paint::plain()));
         image.and_then(|image| png(&image)).map_err(no_picture)
     }
 
@@ -234,9 +240,8 @@ impl Surface {
     fn heat_image(&self, measured: &Measurement, view: &ViewOptions) -> Result<Image, RenderError> {
         let scene = Scene { positions: self.positions(), faces: self.faces(), ..Scene::default() };
         let heat = measured.heat();
-        let [front, back] =
-            view.sides().map(|side| view.draw(&scene, side, heat.paint(&measured.values)));
-        heat.with_legend(&front?.beside(&back?)?, &measured.values)
+        let [front, back] = view.draw_both(&scene, heat.paint(&measured.values))?;
+        heat.with_legend(&front.beside(&back)?, &measured.values)
     }
 }
 
@@ -293,12 +298,12 @@ fn draw_map(
         released: &dropped,
         ..Scene::default()
     };
-    let [front, back] = texture.view.sides().map(|side| {
-        let image = texture.view.draw(&scene, side, Paint::checker(texture.period));
-        image.and_then(|image| png(&image)).map_err(no_picture)
-    });
-    let layout = render_layout(&scene, &LayoutOptions::default()).and_then(|image| png(&image));
-    Ok(MapPictures { front: front?, back: back?, layout: layout.map_err(no_picture)? })
+    let draw = || {
+        let [front, back] = texture.view.draw_both(&scene, Paint::checker(texture.period))?;
+        let layout = render_layout(&scene, &LayoutOptions::default())?;
+        Ok(MapPictures { front: png(&front)?, back: png(&back)?, layout: png(&layout)? })
+    };
+    draw().map_err(no_picture)
 }
 
 /// Draws polygons from both sides in colours, one value each, with edges, irregular vertices and a legend, as a PNG
@@ -314,10 +319,8 @@ pub(crate) fn draw_polygons<'a>(
     let of_faces: Vec<f64> =
         net.polygon_of_face.iter().filter_map(|&p| values.get(p as usize)).copied().collect();
     let draw = || {
-        let [front, back] =
-            view.sides().map(|side| net.draw(irregular, heat.paint(&of_faces), view, side));
-        let both = front?.beside(&back?)?;
-        png(&heat.with_legend(&both, &of_faces)?)
+        let [front, back] = view.draw_both(&net.scene(irregular), heat.paint(&of_faces))?;
+        png(&heat.with_legend(&front.beside(&back)?, &of_faces)?)
     };
     draw().map_err(no_picture)
 }
@@ -350,21 +353,14 @@ impl<'a> Net<'a> {
         Self { positions, faces, polygon_of_face, edges }
     }
 
-    fn draw(
-        &self,
-        irregular: &[(u32, i32)],
-        paint: Paint,
-        view: &ViewOptions,
-        side: View,
-    ) -> Result<Image, RenderError> {
-        let scene = Scene {
+    fn scene<'b>(&'b self, irregular: &'b [(u32, i32)]) -> Scene<'b> {
+        Scene {
             positions: self.positions,
             faces: &self.faces,
             cones: irregular,
             seams: &self.edges,
             ..Scene::default()
-        };
-        view.draw(&scene, side, paint)
+        }
     }
 }
 
@@ -404,7 +400,7 @@ mod tests {
         // Width over height of what is not background.
         let shape = |side, up| {
             let view = ViewOptions { view: Some(side), up };
-            let image = view.draw(&scene, view.sides()[0], Paint::plain()).unwrap();
+            let image = render_surface(&scene, &view.options(Paint::plain())).unwrap();
             let drawn = |x: &u32, y: &u32| image.pixel(*x, *y) != [255; 3];
             let across = (0..image.width()).filter(|x| drawn(x, &(image.height() / 2))).count();
             let down = (0..image.height()).filter(|y| drawn(&(image.width() / 2), y)).count();
