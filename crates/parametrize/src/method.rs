@@ -91,8 +91,8 @@ fn parametrize(
     }
 
     // Certify: the thinnest triangles may flip when a layout is scaled and moved, so the last that passes is taken.
-    let corner_uvs = last_certified(&domain, candidates, &options.tolerance)?;
-    Ok(ComponentMap::new(domain, corner_uvs, rounding, route, log))
+    let certified = last_certified(&domain, candidates, &options.tolerance)?;
+    Ok(ComponentMap::new(domain, certified, rounding, route, log))
 }
 
 /// The relaxed layout with cones found on the mesh itself; so much is tried for them as they were rounded.

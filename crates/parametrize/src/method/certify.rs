@@ -5,16 +5,18 @@ use super::log::StageLog;
 use super::{ComponentStats, MethodError};
 use crate::features::ReleasedFeature;
 use crate::layout::route::Route;
-use crate::map::{SeamlessMap, Tolerance, Violations};
+use crate::map::{Alignment, SeamlessMap, Tolerance, Violations};
 use crate::rounding::RoundingStats;
 use seamstress_mesh::features::EdgeSet;
 
 /// The map of a component, in its own ids.
 pub(super) struct ComponentMap {
-    /// UVs per corner, mesh units.
-    pub(super) corner_uvs: Vec<[f64; 2]>,
+    /// UVs in mesh units.
+    pub(super) map: SeamlessMap,
     /// The edges that are aligned.
     pub(super) features: EdgeSet,
+    /// What is certified of them.
+    pub(super) alignment: Alignment,
     /// Those that were to be, but are not.
     pub(super) released: Vec<ReleasedFeature>,
     pub(super) stats: ComponentStats,
@@ -24,7 +26,7 @@ impl ComponentMap {
     /// With how it was made.
     pub(super) fn new(
         domain: Domain<'_>,
-        corner_uvs: Vec<[f64; 2]>,
+        (map, alignment): (SeamlessMap, Alignment),
         rounding: RoundingStats,
         route: Route,
         log: StageLog,
@@ -41,11 +43,12 @@ impl ComponentMap {
             mixed_integer: rounding.mixed_integer,
             stages: log.finish(),
         };
-        Self { corner_uvs, features: domain.features(), released: domain.released, stats }
+        let features = domain.features();
+        Self { map, features, alignment, released: domain.released, stats }
     }
 }
 
-/// The last of some UVs that are a seamless map of a domain, aligned edges along the axes.
+/// The map of the last of some UVs that are one of a domain, aligned edges along the axes.
 ///
 /// # Errors
 /// What is wrong with the first, if all fail.
@@ -53,13 +56,13 @@ pub(super) fn last_certified(
     domain: &Domain<'_>,
     candidates: Vec<Vec<[f64; 2]>>,
     tolerance: &Tolerance,
-) -> Result<Vec<[f64; 2]>, MethodError> {
+) -> Result<(SeamlessMap, Alignment), MethodError> {
     let mesh = domain.mesh();
     let aligned = domain.features().vertex_pairs(mesh);
     let mut failure = Violations(Vec::new());
     for uvs in candidates.into_iter().rev() {
         match SeamlessMap::certify_aligned(mesh, uvs, &aligned, tolerance) {
-            Ok((map, _)) => return Ok(map.into_corner_uvs()),
+            Ok(certified) => return Ok(certified),
             Err(violations) => failure = violations,
         }
     }

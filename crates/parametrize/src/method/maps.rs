@@ -79,7 +79,11 @@ fn run(
             let mapped =
                 map_component(piece, geometry, &start.restrict(piece), features, options, watch)?;
             tally.add(piece, &mapped.features, &mapped.released);
-            Ok((mapped.corner_uvs, mapped.stats))
+            let uvs = mapped.map.corner_uvs().to_vec();
+            if piece.mesh == *mesh {
+                tally.is_whole(mapped.map, mapped.alignment);
+            }
+            Ok((uvs, mapped.stats))
         })?;
     let (certified, distortion) = both(
         || tally.certify(mesh, corner_uvs.clone(), options.strict_features, &options.tolerance),

@@ -11,6 +11,8 @@ use seamstress_mesh::{Component, Halfedge, TriMesh, Vertex};
 pub(super) struct FeatureTally {
     kept: Vec<Halfedge>,
     released: Vec<ReleasedFeature>,
+    /// The certified map of a component that is the whole mesh.
+    whole: Option<(SeamlessMap, Alignment)>,
 }
 
 /// A certified map of all components, with what became of the features.
@@ -32,7 +34,12 @@ impl FeatureTally {
         }));
     }
 
-    /// Certifies the map of all components; if it is strict about features, none may be released.
+    /// Takes the certified map of a component that is the mesh itself.
+    pub(super) fn is_whole(&mut self, map: SeamlessMap, alignment: Alignment) {
+        self.whole = Some((map, alignment));
+    }
+
+    /// Certifies the map of all components, unless it is that of the only one, which is certified; if it is strict about features, none may be released.
     ///
     /// # Errors
     /// [`MapError::Released`] or [`MapError::Uncertified`].
@@ -43,13 +50,16 @@ impl FeatureTally {
         is_strict: bool,
         tolerance: &Tolerance,
     ) -> Result<AlignedMap, MapError> {
-        let Self { kept, released } = self;
+        let Self { kept, released, whole } = self;
         if is_strict && !released.is_empty() {
             return Err(MapError::Released { released });
         }
         let features = EdgeSet::new(mesh, kept);
         let pairs = features.vertex_pairs(mesh);
-        let (map, alignment) = SeamlessMap::certify_aligned(mesh, corner_uvs, &pairs, tolerance)?;
+        let (map, alignment) = match whole.filter(|(map, _)| map.corner_uvs() == corner_uvs) {
+            Some(certified) => certified,
+            None => SeamlessMap::certify_aligned(mesh, corner_uvs, &pairs, tolerance)?,
+        };
         Ok(AlignedMap { map, features, alignment, released })
     }
 }
