@@ -70,7 +70,7 @@ impl LayoutProblem {
         triangles: Vec<Triangle>,
         penalty: Option<SeamPenalty>,
     ) -> Result<Self, NotPositiveDefinite> {
-        Self::prepared(space, triangles, penalty, |space, elements| {
+        Self::prepared(space, triangles, penalty, None, |space, elements| {
             order_by_nodes(space.nodes(), elements)
         })
     }
@@ -84,14 +84,18 @@ impl LayoutProblem {
         triangles: Vec<Triangle>,
         order: impl FnOnce(&LinearSpace) -> Vec<u32> + Send,
     ) -> Result<Self, NotPositiveDefinite> {
-        Self::prepared(space, triangles, None, |space, _| by_node(space.nodes(), &order(space)))
+        Self::prepared(space, triangles, None, None, |space, _| {
+            by_node(space.nodes(), &order(space))
+        })
     }
 
-    /// With an order of the unknowns that follows from the space and the unknowns of the elements.
+    /// With an order of the unknowns that follows from the space and the unknowns of the elements; of the first ones
+    /// alone, if only so many are free.
     fn prepared(
         space: LinearSpace,
         triangles: Vec<Triangle>,
         penalty: Option<SeamPenalty>,
+        n_free: Option<usize>,
         order: impl FnOnce(&LinearSpace, &[Vec<u32>]) -> Vec<u32> + Send,
     ) -> Result<Self, NotPositiveDefinite> {
         let (maps, mut elements): (Vec<_>, Vec<_>) =
@@ -101,7 +105,9 @@ impl LayoutProblem {
         }
         let cliques = || elements.iter().map(Vec::as_slice);
         let pattern = Pattern::of_cliques(space.n_unknowns(), cliques());
-        let analyze = || Cholesky::analyze(&pattern, &order(&space, &elements));
+        let leading = n_free.map(|n_free| LeadingBlock::new(&pattern, n_free));
+        let solved = leading.as_ref().map_or(&pattern, |block| &block.pattern);
+        let analyze = || Cholesky::analyze(solved, &order(&space, &elements));
         let (cholesky, assembly) = both(analyze, || Assembly::new(pattern.clone(), cliques()));
         let cholesky = cholesky?;
         Ok(Self {
@@ -113,7 +119,7 @@ impl LayoutProblem {
             maps,
             assembly,
             cholesky,
-            leading: None,
+            leading,
             penalty,
         })
     }
@@ -128,29 +134,11 @@ impl LayoutProblem {
         triangles: Vec<Triangle>,
         n_free: usize,
     ) -> Result<Self, NotPositiveDefinite> {
-        let (maps, elements): (Vec<_>, Vec<_>) =
-            triangles.iter().map(|t| ElementMap::new(&space, t)).unzip();
-        let free = |unknowns: &Vec<u32>| {
-            unknowns.iter().copied().filter(|&k| (k as usize) < n_free).collect::<Vec<u32>>()
-        };
-        let free: Vec<Vec<u32>> = elements.iter().map(free).collect();
-        let order = order_by_nodes(&space.nodes()[..n_free], &free);
-        let cliques = || elements.iter().map(Vec::as_slice);
-        let pattern = Pattern::of_cliques(space.n_unknowns(), cliques());
-        let assembly = Assembly::new(pattern, cliques());
-        let leading = LeadingBlock::new(assembly.pattern(), n_free);
-        let cholesky = Cholesky::analyze(&leading.pattern, &order)?;
-        Ok(Self {
-            blocks: vec![0.0; assembly.blocks_len()],
-            locals: vec![0.0; assembly.locals_len()],
-            matrix: vec![0.0; assembly.pattern().len()],
-            space,
-            triangles,
-            maps,
-            assembly,
-            cholesky,
-            leading: Some(leading),
-            penalty: None,
+        Self::prepared(space, triangles, None, Some(n_free), |space, elements| {
+            let is_free = |&k: &u32| (k as usize) < n_free;
+            let free = |unknowns: &Vec<u32>| unknowns.iter().copied().filter(is_free).collect();
+            let free: Vec<Vec<u32>> = elements.iter().map(free).collect();
+            order_by_nodes(&space.nodes()[..n_free], &free)
         })
     }
 
