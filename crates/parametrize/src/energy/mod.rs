@@ -16,7 +16,9 @@ pub use distance::{Arap, Asap, Guarded};
 pub use hessian::ProjectedHessian;
 pub use jacobian::Jacobian;
 pub(crate) use triangle::{CHUNK, extremes, smallest_positive_root};
-pub use triangle::{Triangle, at_corner, is_positive, largest_step, sum_over, triangles};
+pub use triangle::{
+    Triangle, at_corner, is_positive, largest_step, sum_over, triangles, triangles_of,
+};
 pub use untangling::Untangling;
 
 /// Value, gradient and Hessian of an energy at `(sigma_1, sigma_2)`.

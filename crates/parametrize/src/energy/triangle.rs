@@ -3,7 +3,7 @@
 use super::Jacobian;
 use crate::cut::Cut;
 use num_complex::Complex64;
-use seamstress_mesh::{Metric, TriMesh};
+use seamstress_mesh::{Face, Metric, TriMesh};
 use seamstress_parallel::prelude::*;
 
 /// Faces per parallel task; sums are taken per task, then in order, so that the number of threads does
@@ -72,15 +72,24 @@ pub fn at_corner(d: [f64; 4], gradient: [f64; 2]) -> [f64; 2] {
 
 /// The triangles of a cut mesh with a metric.
 pub fn triangles(mesh: &TriMesh, metric: &Metric, cut: &Cut) -> Vec<Triangle> {
+    let wedges = |f: Face| f.halfedges().map(|h| cut.wedge[h]);
+    triangles_of(metric, mesh.faces().map(|f| (f, wedges(f))))
+}
+
+/// The triangles of some faces with their wedges.
+pub fn triangles_of(
+    metric: &Metric,
+    faces: impl Iterator<Item = (Face, [u32; 3])>,
+) -> Vec<Triangle> {
     let total = metric.total_area();
-    mesh.faces()
-        .map(|f| {
+    faces
+        .map(|(f, wedges)| {
             let [_, p, q] = metric.flat[f];
             let determinant = p.re * q.im - p.im * q.re;
             let g1 = [q.im / determinant, -q.re / determinant];
             let g2 = [-p.im / determinant, p.re / determinant];
             Triangle {
-                wedges: f.halfedges().map(|h| cut.wedge[h]),
+                wedges,
                 gradients: [[-g1[0] - g2[0], -g1[1] - g2[1]], g1, g2],
                 weight: metric.area[f] / total,
                 wanted: Complex64::ZERO,

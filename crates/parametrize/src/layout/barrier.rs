@@ -9,12 +9,12 @@ use super::penalty::SeamPenalty;
 use super::problem::LayoutProblem;
 use super::space::LinearSpace;
 use crate::cut::MatchedCut;
-use crate::energy::{SymmetricDirichlet, Triangle, triangles};
+use crate::energy::{SymmetricDirichlet, triangles_of};
 use crate::features::Sectors;
 use crate::progress::{SolveError, Watch};
 use crate::quarter::{rotation, unit};
 use num_complex::Complex64;
-use seamstress_mesh::{Face, Metric};
+use seamstress_mesh::Metric;
 
 /// A layout of a patch of the all-seam cut with nearly closed seams.
 #[derive(Debug, Clone)]
@@ -51,10 +51,8 @@ pub fn barrier(
     watch: &mut Watch<'_, '_>,
 ) -> Result<PenaltyLayout, SolveError> {
     let MatchedCut { unfolding, matching } = matched;
-    let all = triangles(sectors.slit(), metric, &unfolding.cut);
-    let share = 1.0 / all.len() as f64;
-    let inside = |&f: &Face| Triangle { wedges: patch.wedges(f), ..all[f.at()] };
-    let triangles = patch.faces().iter().map(inside).collect();
+    let triangles = triangles_of(metric, patch.faces().iter().map(|&f| (f, patch.wedges(f))));
+    let share = 1.0 / sectors.slit().n_faces() as f64;
     let excess: Vec<f64> = matched.excess().collect();
     let turning = unfolding.turning.iter().zip(&excess).filter(|(h, _)| patch.has(**h));
     let widest = turning.fold(0.0f64, |widest, (_, turn)| widest.max(turn.abs()));
