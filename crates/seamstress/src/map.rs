@@ -271,7 +271,7 @@ impl<R: Described> SeamlessMap<R> {
         writer: &mut impl io::Write,
     ) -> io::Result<()> {
         let lines = self.report.lines();
-        let uvs = (self.corner_uvs(), set);
+        let uvs = (&self.corners, set);
         write_map(writer, name.as_ref(), &self.surface, R::TITLE, uvs, &lines)
     }
 }
@@ -295,27 +295,26 @@ pub(crate) fn write_map(
     name: &Path,
     surface: &Surface,
     title: &str,
-    (corner_uvs, set): (&[[f64; 2]], UvSet),
+    (corners, set): (&CornerUvs, UvSet),
     lines: &[String],
 ) -> io::Result<()> {
     let mut comments = vec![format!("{title} by Seamstress {VERSION}")];
     comments.extend(source_line(surface));
     comments.extend_from_slice(lines);
     let (positions, polygons) = (surface.positions(), surface.faces());
-    let corners = CornerUvs::new(polygons, corner_uvs);
     let uvs = Attribute::new(
         "map",
         AttributeDomain::Corner,
         AttributeKind::Uv,
         2,
-        corners.uvs.into_flattened(),
+        corners.uvs.as_flattened().to_vec(),
     );
     let format = seamstress_io::Format::from_path(name).unwrap_or(seamstress_io::Format::Obj);
     let mut attributes = surface.attributes_on_triangles();
     let is_second = set == UvSet::Second && format == seamstress_io::Format::Gltf;
     let first = attributes.all.iter().position(|a| a.kind == AttributeKind::Uv);
     let place = first.filter(|_| is_second).map_or(0, |first| first + 1);
-    attributes.all.insert(place, uvs.with_rows(corners.faces.into_flattened()));
+    attributes.all.insert(place, uvs.with_rows(corners.faces.as_flattened().to_vec()));
     let (attributes, comments) = (&attributes, &comments[..]);
     seamstress_io::Polymesh { positions, polygons, attributes, comments }.write(writer, format)
 }

@@ -4,7 +4,7 @@ use super::options::MethodOptions;
 use crate::context::Watcher;
 use crate::error::{Error, ErrorKind};
 use crate::finding::{Finding, listing};
-use crate::map::{SeamlessMap, UvSet};
+use crate::map::{CornerUvs, SeamlessMap, UvSet};
 use crate::report::{ConeReport, Distortion, SurfaceReport, VERSION};
 use crate::surface::Surface;
 use crate::words::counted;
@@ -91,8 +91,8 @@ impl FieldLayout {
     ) -> io::Result<()> {
         let title = "Uncertified layout of a cross field (triangles are flipped)";
         let lines = [self.report.distortion.line(self.cones.len())];
-        let uvs = (&self.corner_uvs[..], set);
-        crate::map::write_map(writer, name.as_ref(), &self.surface, title, uvs, &lines)
+        let corners = CornerUvs::new(self.surface.faces(), &self.corner_uvs);
+        crate::map::write_map(writer, name.as_ref(), &self.surface, title, (&corners, set), &lines)
     }
 }
 
