@@ -115,13 +115,13 @@ fn lay_out_directly<'m>(
 
     // Clean up: fewer cones, as far as an estimate of the distortion pays for it.
     log.enter(Stage::CleanUp, watch)?;
-    let cleaned = clean_up(&domain, &rounding.start, start, options, watch)?;
+    let cleaned = clean_up(&domain, &rounding.start, &domain.nowhere(), start, options, watch)?;
 
     // Lay out with seams that close exactly, no flipped triangle and no wrong angle; and relax to the smallest mean
     // distortion.
     log.enter(Stage::Layout, watch)?;
     let (domain, rounding, relaxed) =
-        lay_out(domain, rounding, cleaned.as_ref(), effort, start, options, watch)?;
+        lay_out(domain, rounding, cleaned, effort, start, options, watch)?;
     log.count(relaxed.iterations);
     Ok((domain, rounding.stats, relaxed))
 }

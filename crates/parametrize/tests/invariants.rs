@@ -372,12 +372,15 @@ fn clean_up_never_makes_cones() {
             (cones as i32, Surrogate::new(sectors, metric, &index).unwrap().energy())
         };
         let (before, energy_before) = cost(&start.matched);
+        let [nowhere, everywhere] =
+            [false, true].map(|held| VertexData::filled(sectors.mesh().n_vertices(), held));
         for price in [0.0006, 0.01, 1.0] {
             let count = ConeCount::Cones;
             let options = CleanUpOptions { price, count, largest_deviation: 1.5 };
-            let (FramedCut { matched, .. }, stats) =
-                unwatched(|watch| clean_up(sectors, metric, &start, None, &options, watch))
-                    .unwrap();
+            let (FramedCut { matched, .. }, stats) = unwatched(|watch| {
+                clean_up(sectors, metric, &start, None, &nowhere, &options, watch)
+            })
+            .unwrap();
             let (after, energy) = cost(&matched);
             assert_eq!(stats.saved, before - after);
             assert!(stats.saved >= 0);
@@ -389,6 +392,25 @@ fn clean_up_never_makes_cones() {
             for s in sectors.slit().vertices().filter(|&s| !sectors.is_free(s)) {
                 let (low, high) = sectors.bounds(s);
                 assert!((low..=high).contains(&index[s]));
+            }
+            // Where cones went from they stay when held, and elsewhere they still go.
+            let rounded = start.matched.sector_indices(sectors, metric);
+            let mut held = nowhere.clone();
+            let gone = sectors.slit().vertices().filter(|&s| rounded[s] != index[s]);
+            gone.step_by(2).for_each(|s| held[sectors.vertex(s)] = true);
+            for held in [held, everywhere.clone()] {
+                let (FramedCut { matched, .. }, stats) = unwatched(|watch| {
+                    clean_up(sectors, metric, &start, None, &held, &options, watch)
+                })
+                .unwrap();
+                let cleaned = matched.sector_indices(sectors, metric);
+                let is_held = |s: &Vertex| held[sectors.vertex(*s)];
+                assert!(
+                    sectors.slit().vertices().filter(is_held).all(|s| cleaned[s] == rounded[s])
+                );
+                if held.iter().all(|&held| held) {
+                    assert_eq!(stats.cancelled + stats.moved, 0);
+                }
             }
         }
     });

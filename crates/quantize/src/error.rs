@@ -46,7 +46,7 @@ pub enum QuantizeError {
 }
 
 /// Why a component has no integer-grid map; elements are those of the whole mesh.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum QuantizationFailure {
     /// The caller asked to stop.
@@ -86,6 +86,9 @@ pub enum QuantizationFailure {
         face: u32,
         /// Share of the distance that could be gone.
         reached: f64,
+        /// The vertices at the ends of lines that are much shorter than a cell, in the whole component: what leaves
+        /// integers little room.
+        pairs: Vec<[u32; 2]>,
     },
     /// The caller refused the map of every grid tried.
     #[error("no grid gave an acceptable map: {0}; ask for more quads")]
@@ -118,12 +121,14 @@ impl QuantizationFailure {
     /// With other names of vertices and faces.
     #[must_use]
     pub fn renamed(self, vertex: impl Fn(u32) -> u32, face: impl Fn(u32) -> u32) -> Self {
+        let renamed = |pairs: Vec<[u32; 2]>| {
+            pairs.into_iter().map(|pair| pair.map(&vertex)).collect::<Vec<_>>()
+        };
         match self {
-            Self::TooCoarse { count, pairs } => {
-                let renamed = |pair: [u32; 2]| pair.map(&vertex);
-                Self::TooCoarse { count, pairs: pairs.into_iter().map(renamed).collect() }
+            Self::TooCoarse { count, pairs } => Self::TooCoarse { count, pairs: renamed(pairs) },
+            Self::Blocked { face: at, reached, pairs } => {
+                Self::Blocked { face: face(at), reached, pairs: renamed(pairs) }
             }
-            Self::Blocked { face: at, reached } => Self::Blocked { face: face(at), reached },
             Self::Refused(Refusal { reason, faces }) => {
                 Self::Refused(Refusal { reason, faces: faces.into_iter().map(face).collect() })
             }
@@ -165,7 +170,8 @@ mod tests {
             "the grid is too coarse: 2 pairs of cones or feature lines would merge or swap (vertices 3 and 17, \
              3 and 3); ask for more quads"
         );
-        let text = QuantizationFailure::Blocked { face: 8, reached: 0.374 }.to_string();
+        let text = QuantizationFailure::Blocked { face: 8, reached: 0.374, pairs: vec![[1, 2]] };
+        let text = text.to_string();
         assert!(text.contains("near face 8 (stopped at 37 %)"), "{text}");
     }
 }

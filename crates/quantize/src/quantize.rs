@@ -24,8 +24,6 @@ const TOO_FAR_OFF: f64 = 0.1;
 /// caller is asked before more sizes are tried.
 const FAR_TOO_MANY: f64 = 1.5;
 const FOLLOWING: f64 = 0.5;
-/// The part of the work that a component is worth that is spent on further sizes.
-const SIZES_SHARE: f64 = 0.2;
 /// Cells of a size that is no better are followed by ones on the other side of the best, nearer by this power.
 const NEARER: f64 = 0.7;
 /// Most that a cell is lengthened or shortened by at once: where cones are dense, the count hardly follows the size.
@@ -198,16 +196,13 @@ impl<'p> Components<'p, '_, '_> {
     /// no better, on the other side of the best size, since where cones are dense the number does not always fall when
     /// cells grow. Names the lines for which the caller would rather have another map.
     fn meet(&mut self, options: &QuantizeOptions) -> Result<(Sized, Vec<[u32; 2]>), QuantizeError> {
-        let (size, most_work) = (options.size, SIZES_SHARE * options.effort as f64);
+        let size = options.size;
         let side = self.searches.iter().map(ComponentSearch::side).fold(0.0, f64::hypot);
         let mut cell = size.cell(side);
         let mut best: Option<Sized> = None;
-        let (mut crowded, mut last, mut first_work) = (Vec::new(), None, 0.0);
+        let (mut crowded, mut last) = (Vec::new(), None);
         for tried in 1..=2 * MOST_SIZES {
             let placements = self.place(cell)?;
-            if tried == 1 {
-                first_work = self.work();
-            }
             let quads: f64 = placements.iter().map(|p| p.quads).sum();
             let ratio = match size {
                 GridSize::Quads(asked) => quads / asked,
@@ -227,7 +222,8 @@ impl<'p> Components<'p, '_, '_> {
             if let Some(best) = &mut best {
                 best.tried = tried;
                 let is_worth_more = tried < MOST_SIZES || (is_better && off > FAR_OFF);
-                let is_over = !crowded.is_empty() || self.work() > first_work + most_work;
+                let is_over =
+                    !crowded.is_empty() || self.searches.iter().any(ComponentSearch::is_spent);
                 if off < CLOSE_ENOUGH || !is_worth_more || is_over {
                     break;
                 }
@@ -244,11 +240,6 @@ impl<'p> Components<'p, '_, '_> {
             crowded = self.crowded(best.cell);
         }
         Ok((best, crowded))
-    }
-
-    /// The work done on the component that took most.
-    fn work(&self) -> f64 {
-        self.searches.iter().map(ComponentSearch::work).fold(0.0, f64::max)
     }
 
     /// The lines much shorter than a cell of components for which the caller would rather have another map.

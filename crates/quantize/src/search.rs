@@ -58,6 +58,10 @@ const FINEST_BRIEFLY: f64 = 0.8;
 const COARSE_REFINEMENT: f64 = 1.4;
 /// Passes of roundings that a brief search is worth.
 const BRIEF_EFFORT: f64 = 20.0;
+/// Passes after which the caller is asked where paths to the integers are blocked.
+const BLOCKED_EFFORT: f64 = 30.0;
+/// The part of the work that a component is worth that is spent on further sizes.
+const SIZES_SHARE: f64 = 0.2;
 /// Lines shorter than this had to get much longer, grid units.
 const SHORT_LINE: f64 = 0.5;
 /// Roundings on one grid, each but the first with the cuts that the one before has taught.
@@ -119,6 +123,10 @@ pub(crate) struct ComponentSearch<'a> {
     stats: QuantizationStats,
     /// Passes of roundings so far and moves along paths, in usual passes.
     work: f64,
+    /// The work after which the search ends.
+    most_work: f64,
+    /// Whether the caller is still to be asked if the search is to go on.
+    is_asking: bool,
 }
 
 impl<'a> ComponentSearch<'a> {
@@ -160,12 +168,19 @@ impl<'a> ComponentSearch<'a> {
             seconds_reduction: clock.elapsed().as_secs_f64(),
             ..Default::default()
         };
-        Ok(Self { piece, options, layout, energy, obstacles, coarsest: None, stats, work: 0.0 })
-    }
-
-    /// The work done so far, in usual passes of roundings.
-    pub(crate) fn work(&self) -> f64 {
-        self.work
+        let (coarsest, work, most_work, is_asking) = (None, 0.0, options.effort as f64, true);
+        Ok(Self {
+            piece,
+            options,
+            layout,
+            energy,
+            obstacles,
+            coarsest,
+            stats,
+            work,
+            most_work,
+            is_asking,
+        })
     }
 
     /// Side of a square with the area of the component, mesh units.
@@ -196,15 +211,15 @@ impl<'a> ComponentSearch<'a> {
             None => usize::MAX,
         };
         let (mut first, mut is_hopeless, mut last) = (None, false, 1.0);
-        let mut is_asking = self.coarsest.is_none();
         for (k, share) in NEARBY.into_iter().chain(finer).take(n_shares).enumerate() {
             if let Some(first) = &first {
                 let is_brief = share >= FINEST_BRIEFLY && self.work < BRIEF_EFFORT && !is_hopeless;
-                let is_over = is_asking && !is_brief && !decisions.goes_on(first);
-                if is_over || self.is_spent() {
+                if !is_brief {
+                    self.ask(first, decisions);
+                }
+                if self.is_spent() {
                     break;
                 }
-                is_asking &= is_brief;
             }
             let is_near = match self.work < BRIEF_EFFORT {
                 true => is_hopeless && k < NEARBY.len(),
@@ -215,22 +230,37 @@ impl<'a> ComponentSearch<'a> {
             }
             last = share;
             match self.try_grid(share.sqrt() * asked, column, decisions, watch) {
-                Ok(placement) => return Ok(self.placed(placement, asked, first)),
+                Ok(placement) => {
+                    let first = first.map(|failure| failure.in_whole(self.piece));
+                    return Ok(self.placed(placement, asked, first));
+                }
                 Err(failure) if !failure.is_of_grid() => return Err(failure.in_whole(self.piece)),
                 Err(failure) => {
                     is_hopeless = matches!(failure, QuantizationFailure::TooCoarse { count, .. } if count > HOPELESS);
-                    first = first.or(Some(failure.in_whole(self.piece)));
+                    first = first.or(Some(failure));
                 }
             }
         }
+        let first = first.map(|failure| failure.in_whole(self.piece));
         match &self.coarsest {
             None => Err(first.unwrap_or(QuantizationFailure::Refused(Refusal::default()))),
             Some(coarsest) => Ok(self.placed(self.written(coarsest, column)?, asked, first)),
         }
     }
 
-    fn is_spent(&self) -> bool {
-        self.work >= self.options.effort as f64
+    /// Whether the search has taken all the work that it is worth.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.work >= self.most_work
+    }
+
+    /// Asks the caller, once and only as long as there is no map, whether to go on after a failure; if not, the search is
+    /// worth no more work.
+    fn ask(&mut self, failure: &QuantizationFailure, decisions: &mut dyn Decisions) {
+        if std::mem::take(&mut self.is_asking)
+            && !decisions.goes_on(&failure.clone().in_whole(self.piece))
+        {
+            self.most_work = self.work;
+        }
     }
 
     /// The size of its cells where a size is asked for, both in mesh units: smaller where the component is not much larger.
@@ -246,9 +276,7 @@ impl<'a> ComponentSearch<'a> {
     /// The lines that had to get much longer for cells of a size in mesh units, if there are some.
     pub(crate) fn short_lines(&mut self, cell: f64) -> Option<QuantizationFailure> {
         let h = self.cell(cell) / self.layout.unit;
-        let problem = self.obstacles.problem(&self.layout, &self.energy, h).ok()?;
-        let is_short = |c: &&Constraint| c.minimum > 0 && c.length < SHORT_LINE;
-        let pairs = ends_of(problem.constraints.iter().filter(is_short));
+        let pairs = short_lines(&self.obstacles.problem(&self.layout, &self.energy, h).ok()?);
         let count = pairs.len();
         let failure = QuantizationFailure::TooCoarse { count, pairs }.in_whole(self.piece);
         (count > 0).then_some(failure)
@@ -286,13 +314,18 @@ impl<'a> ComponentSearch<'a> {
     ) -> Result<Placement, QuantizationFailure> {
         self.stats.grids += 1;
         let candidate = match self.options.rounding {
-            RoundingMethod::Constrained => self.reach(h, watch)?,
+            RoundingMethod::Constrained => self.reach(h, decisions, watch)?,
             RoundingMethod::Greedy => self.follow(h)?,
         };
         let placement = self.written(&candidate, column)?;
         decisions
             .accept(self.piece, &placement.corner_uvs)
             .map_err(QuantizationFailure::Refused)?;
+        if self.coarsest.is_none() {
+            let further = SIZES_SHARE * self.options.effort as f64;
+            self.most_work = self.most_work.min(self.work + further);
+            self.is_asking = false;
+        }
         if self.coarsest.as_ref().is_none_or(|coarsest| coarsest.h < h) {
             self.coarsest = Some(candidate);
         }
@@ -314,11 +347,15 @@ impl<'a> ComponentSearch<'a> {
     fn reach(
         &mut self,
         h: f64,
+        decisions: &mut dyn Decisions,
         watch: &mut Watch<'_, '_>,
     ) -> Result<Candidate, QuantizationFailure> {
         let (mut start, mut tried) = (None, BTreeSet::new());
         let mut failure = QuantizationFailure::Refused(Refusal::default());
         for k in 0..MOST_ROUNDINGS {
+            if k > 0 && self.work > BLOCKED_EFFORT {
+                self.ask(&failure, decisions);
+            }
             if k > 0 && self.is_spent() {
                 break;
             }
@@ -326,7 +363,7 @@ impl<'a> ComponentSearch<'a> {
             let problem = self.obstacles.problem(&self.layout, &self.energy, h)?;
             let size = (problem.constraints.len() * problem.mean.len()) as f64 / USUAL_ENTRIES;
             let size = size.max(1.0);
-            let passes = ((self.options.effort as f64 - self.work) / size).max(1.0) as usize;
+            let passes = ((self.most_work - self.work) / size).max(1.0) as usize;
             let rounding = round_near(&problem, start.take(), passes, watch)?;
             self.work += size * rounding.passes as f64;
             self.stats.roundings += 1;
@@ -368,7 +405,8 @@ impl<'a> ComponentSearch<'a> {
             let z = self.layout.problem.space().expand(&y);
             let cuts = farkas_cuts(&self.layout.scene(&z), self.layout.problem.triangles())?;
             let face = cuts.first().map_or(0, |cut| cut.face.0);
-            failure = QuantizationFailure::Blocked { face, reached };
+            let pairs = short_lines(&problem);
+            failure = QuantizationFailure::Blocked { face, reached, pairs };
             if cuts.is_empty() {
                 break;
             }
@@ -425,6 +463,12 @@ fn round_near(
 fn too_coarse(problem: &RoundingProblem<'_>, rounding: &Rounding) -> QuantizationFailure {
     let involved = rounding.violated.involved.iter().map(|&i| &problem.constraints[i]);
     QuantizationFailure::TooCoarse { count: rounding.violated.count, pairs: ends_of(involved) }
+}
+
+/// The ends of lines that have to get much longer.
+fn short_lines(problem: &RoundingProblem<'_>) -> Vec<[u32; 2]> {
+    let is_short = |c: &&Constraint| c.minimum > 0 && c.length < SHORT_LINE;
+    ends_of(problem.constraints.iter().filter(is_short))
 }
 
 /// The pairs of vertices that displacements keep apart, each once.

@@ -15,11 +15,14 @@ use seamstress_quantize::{
 use std::collections::BTreeSet;
 
 /// Maps made at most, each with fewer features.
-const MOST_MAPS: usize = 6;
+const MOST_MAPS: i32 = 6;
 /// The part of the work on a rounding that one is worth where there is another already.
 const EFFORT_AGAIN: usize = 5;
-/// Curves shorter than so many cells are given up before others.
+/// Curves shorter than so many cells are given up first.
 const SHORT: f64 = 1.0;
+/// With every further map those are given up that are so many times as long, and always some: those less than so many times as
+/// long as the shortest.
+const LONGER: f64 = 4.0;
 
 /// Rounds a map, and makes something of it on the grid.
 pub(crate) trait Round<T>:
@@ -87,12 +90,10 @@ impl Surface {
             };
             let settings = QuantizeOptions { effort, ..settings };
             let may_give_up = n_maps < MOST_MAPS && !options.map.features_strict;
-            let Attempt { made, crowd } = self.attempt(
-                (asked, &given_up),
-                (options, &settings, may_give_up),
-                watcher,
-                rounding,
-            );
+            // The shortest curves first, later longer ones.
+            let short = may_give_up.then(|| self.cell(options) * SHORT * LONGER.powi(n_maps - 1));
+            let Attempt { made, crowd } =
+                self.attempt((asked, &given_up), (options, &settings, short), watcher, rounding);
             best = match (made, best) {
                 (Ok(made), best) => {
                     let closest = best.filter(|best| best.off <= made.off).unwrap_or(made);
@@ -102,9 +103,9 @@ impl Surface {
                     Some(closest)
                 }
                 (Err(error), _) if error.kind() == ErrorKind::Cancelled => return Err(error),
-                (Err(_), Some(best)) => break best,
+                (Err(_), Some(best)) if crowd.is_empty() => break best,
                 (Err(error), None) if crowd.is_empty() => return Err(error),
-                (Err(_), None) => None,
+                (Err(_), best) => best,
             };
             given_up = given_up.union(mesh, &crowd);
             n_maps += 1;
@@ -135,7 +136,7 @@ impl Surface {
     fn attempt<R: Round<T>, T>(
         &self,
         (asked, given_up): (&FeatureCurves, &EdgeSet),
-        (options, settings, may_give_up): (&IntegerMapOptions, &QuantizeOptions, bool),
+        (options, settings, short): (&IntegerMapOptions, &QuantizeOptions, Option<f64>),
         watcher: &mut Watcher,
         rounding: &Rounding<R, T>,
     ) -> Attempt<T> {
@@ -149,9 +150,9 @@ impl Surface {
         let more = self.details(&start.kept(mesh), options);
         let start = start.without(mesh, &more);
         let kept = start.kept(mesh);
-        let crowded = |pairs: &[[u32; 2]]| match may_give_up {
-            true => self.crowded(pairs, &kept, self.cell(options)),
-            false => EdgeSet::new(mesh, []),
+        let crowded = |pairs: &[[u32; 2]]| match short {
+            Some(short) => self.crowded(pairs, &kept, short),
+            None => EdgeSet::new(mesh, []),
         };
         let mut goes_on = |failure: &_| {
             let pairs: Vec<_> = close(failure).collect();
@@ -181,8 +182,8 @@ impl Surface {
     }
 
     /// The edges to give up where vertices are too close together: of the curves at lines of the grid that would meet, the short
-    /// ones, or else the shortest at each place.
-    fn crowded(&self, pairs: &[[u32; 2]], kept: &EdgeSet, cell: f64) -> EdgeSet {
+    /// ones.
+    fn crowded(&self, pairs: &[[u32; 2]], kept: &EdgeSet, short: f64) -> EdgeSet {
         let graph = FeatureGraph::new(self.mesh(), self.cell_metric(), kept);
         let inside: Vec<&Curve> =
             graph.curves.iter().filter(|curve| curve.boundary_edges == 0).collect();
@@ -191,25 +192,19 @@ impl Surface {
             inside.iter().copied().filter(|curve| touches(&curve)).collect::<Vec<_>>()
         };
         let ends: BTreeSet<[u32; 2]> = pairs.iter().copied().collect();
-        let crowds: Vec<Vec<&Curve>> = ends.iter().map(at).collect();
-        let short: Vec<&Curve> =
-            crowds.iter().flatten().copied().filter(|curve| curve.length < SHORT * cell).collect();
-        let given_up = match short.is_empty() {
-            true => crowds
-                .iter()
-                .filter_map(|crowd| crowd.iter().min_by(|a, b| a.length.total_cmp(&b.length)))
-                .copied()
-                .collect(),
-            false => short,
-        };
-        EdgeSet::new(self.mesh(), given_up.iter().flat_map(|curve| curve.edges.iter().copied()))
+        let crowds: Vec<&Curve> = ends.iter().flat_map(at).collect();
+        let shortest = crowds.iter().map(|curve| curve.length).fold(f64::INFINITY, f64::min);
+        let short = short.max(LONGER * shortest);
+        let given_up = crowds.into_iter().filter(|curve| curve.length < short);
+        EdgeSet::new(self.mesh(), given_up.flat_map(|curve| curve.edges.iter().copied()))
     }
 }
 
 /// The pairs of vertices that a grid has not kept apart.
 fn close(failure: &QuantizationFailure) -> impl Iterator<Item = [u32; 2]> + '_ {
     let pairs = match failure {
-        QuantizationFailure::TooCoarse { pairs, .. } => &pairs[..],
+        QuantizationFailure::TooCoarse { pairs, .. }
+        | QuantizationFailure::Blocked { pairs, .. } => &pairs[..],
         _ => &[],
     };
     pairs.iter().copied()

@@ -7,6 +7,7 @@ use super::{MapOptions, Purpose, Start};
 use crate::cut::FramedCut;
 use crate::progress::{SolveError, Watch, unless_cancelled};
 use crate::rounding::{self, CleanUpOptions, ConeCount, Holonomy};
+use seamstress_mesh::VertexData;
 
 /// Price of a cone of a map that is an end in itself, and how far its index may be from the curvature.
 const MAP_PRICE: f64 = 0.0005;
@@ -86,13 +87,15 @@ impl Cleaned {
     }
 }
 
-/// Fewer cones than after rounding, as far as an estimate of the distortion pays for it; none if they stay.
+/// Fewer cones than after rounding, as far as an estimate of the distortion pays for it; none if they all stay, as those at
+/// vertices held do.
 ///
 /// # Errors
 /// [`SolveError`].
 pub(super) fn clean_up(
     domain: &Domain<'_>,
     rounded: &FramedCut,
+    held: &VertexData<bool>,
     start: &Start,
     options: &MapOptions,
     watch: &mut Watch<'_, '_>,
@@ -102,7 +105,7 @@ pub(super) fn clean_up(
     let CleanUpTerms { price, count, largest_deviation } = terms;
     let options = CleanUpOptions { price, count, largest_deviation };
     let cleaned =
-        rounding::clean_up(sectors, metric, rounded, domain.guide.as_ref(), &options, watch);
+        rounding::clean_up(sectors, metric, rounded, domain.guide.as_ref(), held, &options, watch);
     let Ok((start, stats)) = unless_cancelled(cleaned)? else { return Ok(None) };
     if stats.cancelled + stats.moved == 0 {
         return Ok(None);

@@ -8,8 +8,11 @@ use crate::rounding::RoundingOptions;
 use seamstress_mesh::features::EdgeSet;
 use seamstress_mesh::{Component, Geometry};
 
-/// Maps one component along its features. For quads, where features are lost, once more with cones at no price, since
-/// coarse patches may need more of them; the map that follows more features is taken.
+/// The part of the features that may be lost for the sake of directions, or of fewer cones.
+const FEW: f64 = 0.01;
+
+/// Maps one component along its features and its guide, which may cost only a few features. For quads, where more are lost, once
+/// more with cones at no price, since coarse patches may need more of them; the map that follows more features is taken.
 ///
 /// # Errors
 /// [`MethodError`] of the last trial.
@@ -27,21 +30,33 @@ pub(super) fn map_component(
     let metric = geometry.metric(mesh);
     let features = features.restrict(piece);
     let mut domain = Domain::new(mesh, geometry, &metric, features, options);
-    let map = map_domain(domain.clone(), start, options, watch)?;
+    let few = match options.strict_features {
+        true => 0,
+        false => (FEW * domain.features().edges().len() as f64) as usize,
+    };
+    let too_many = domain.released.len() + few + 1;
+    let mut along = None;
+    if domain.guide.is_some() {
+        let domain = domain.clone().releasing_fewer_than(too_many);
+        along = unless_cancelled(parametrize(domain, start, options, watch))?.ok();
+    }
+    domain.guide = None;
+    let map = match along {
+        Some(map) => map,
+        None => map_domain(domain.clone(), start, options, watch)?,
+    };
     let is_texture = options.purpose == Purpose::Texture;
-    if is_texture || map.released.len() == domain.released.len() {
+    if is_texture || map.released.len() < too_many {
         return Ok(map);
     }
     let rounding = RoundingOptions { cone_bias: 0.0, ..options.rounding };
     let options = MapOptions { rounding, ..*options };
-    domain.guide = None;
     let domain = domain.releasing_fewer_than(map.released.len());
     let other = map_domain(domain, start, &options, watch);
     Ok(unless_cancelled(other)?.unwrap_or(map))
 }
 
-/// Maps a domain along its features and its guide; where that fails, without the guide, then with nothing aligned, and then
-/// in a metric without thin triangles.
+/// Maps a domain along its features; where that fails, with nothing aligned, and then in a metric without thin triangles.
 ///
 /// # Errors
 /// [`MethodError`] of the last trial.

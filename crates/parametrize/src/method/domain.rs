@@ -83,6 +83,11 @@ impl<'m> Domain<'m> {
         self.sectors.mesh()
     }
 
+    /// No vertex.
+    pub(super) fn nowhere(&self) -> VertexData<bool> {
+        VertexData::filled(self.mesh().n_vertices(), false)
+    }
+
     /// Whether any edge is aligned.
     pub(super) fn any_aligned(&self) -> bool {
         self.sectors.any_aligned()
@@ -108,12 +113,9 @@ impl<'m> Domain<'m> {
         Self { fewest_unwanted, ..self }
     }
 
-    /// What to try where this domain has no map: the same without a guide, then with nothing aligned, then in metrics in
-    /// which thin triangles open up, more and more.
+    /// What to try where this domain, without a guide, has no map: the same with nothing aligned, then in metrics in which thin
+    /// triangles open up, more and more.
     pub(super) fn simpler(&self) -> Option<Self> {
-        if self.guide.is_some() {
-            return Some(Self { guide: None, ..self.clone() });
-        }
         if self.any_aligned() {
             let everywhere = VertexData::filled(self.mesh().n_vertices(), true);
             let free = self.without_features_near(everywhere, 0);
@@ -125,12 +127,11 @@ impl<'m> Domain<'m> {
         Some(Self { metric, lengthening, ..self.clone() })
     }
 
-    /// The same with the features dropped near defects; none if nothing is left to align then, if too many are released, if
-    /// that was tried often enough, or if there is a guide: features come before directions.
+    /// The same with the features dropped near defects; none if nothing is left to align then, if too many are released,
+    /// or if that was tried often enough.
     pub(super) fn without_features_at(&self, defects: &Defects) -> Option<Self> {
         let near = defects.vertices(self.mesh());
-        let is_first = self.guide.is_none() && self.any_aligned();
-        let may_drop = is_first && self.rounds < DROP_ROUNDS;
+        let may_drop = self.any_aligned() && self.rounds < DROP_ROUNDS;
         let fewer = may_drop.then(|| self.without_features_near(near, self.rounds))?;
         (fewer.any_aligned() && fewer.is_wanted()).then_some(fewer)
     }

@@ -115,7 +115,7 @@ pub(super) fn scout(
     watch.pulse()?;
     let Some(holonomy) = holonomy else { return Ok(None) };
     let start = holonomy?.fix(start);
-    let Some(layout) = lay_out_as_given(domain, &start, options, watch)? else { return Ok(None) };
+    let Ok(layout) = lay_out_as_given(domain, &start, options, watch)? else { return Ok(None) };
     log.count(layout.iterations);
     let is_as_expected = options.fast || layout.excess() <= TRUST * excess;
     Ok(Some(Scouted { stats, is_as_expected, layout }))

@@ -78,7 +78,8 @@ const MINIMUM_GAIN: f64 = 1e-6;
 /// Cancels pairs of cones and moves cones while the surrogate energy grows by less than the price per cone removed; the
 /// matchings change along the way.
 ///
-/// With a guide the ways that cones take have a price too, since they turn its directions.
+/// With a guide the ways that cones take have a price too, since they turn its directions. Vertices held keep their cones as
+/// they are, or none.
 ///
 /// The surrogate tells exactly what a unit of index that goes from a cone to any sector around it changes. In every round
 /// the cones go, the most profitable first, each where it gains most: onto an opposite cone, or to an empty sector. In
@@ -91,11 +92,12 @@ pub fn clean_up(
     metric: &Metric,
     start: &FramedCut,
     guide: Option<&Guide>,
+    held: &VertexData<bool>,
     options: &CleanUpOptions,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(FramedCut, CleanUpStats), SolveError> {
     let index = start.matched.sector_indices(sectors, metric);
-    let mut work = CleanUp::new(sectors, metric, index, guide, *options)?;
+    let mut work = CleanUp::new(sectors, metric, index, guide, held, *options)?;
     let before = work.count();
     for some in work.cones().chunks(LOOKS) {
         watch.pulse()?;
@@ -122,7 +124,7 @@ struct CleanUp<'a> {
     surrogate: Surrogate<'a>,
     /// Index beyond the preferred one: what makes a cone or a false corner. Free sectors have none.
     excess: VertexData<i32>,
-    /// The least and the largest excess that a sector may have; free ones none.
+    /// The least and the largest excess that a sector may come to have; free and held ones none.
     range: VertexData<(i32, i32)>,
     options: CleanUpOptions,
     /// Net units sent across each edge, negated on twins.
@@ -148,12 +150,13 @@ impl<'a> CleanUp<'a> {
         metric: &'a Metric,
         index: VertexData<i32>,
         guide: Option<&Guide>,
+        held: &VertexData<bool>,
         options: CleanUpOptions,
     ) -> Result<Self, NotPositiveDefinite> {
         let slit = sectors.slit();
         let curvature = metric.curvature(slit);
         let range = |s: Vertex| {
-            if sectors.is_free(s) {
+            if sectors.is_free(s) || held[sectors.vertex(s)] {
                 return (1, 0);
             }
             let (low, high) = sectors.bounds(s);
