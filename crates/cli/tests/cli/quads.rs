@@ -169,6 +169,22 @@ fn quad_meshes_of_the_collection_are_measured_and_laid_out_exactly() {
     }
 }
 
+/// Spikes and close features, of which some leave no room to the cells.
+#[test]
+fn a_coarse_robot_cat_has_quads_of_few_irregular_vertices() {
+    let Some(mesh) = testkit::in_collection("robocat_deci.off") else { return };
+    let (folder, mesh) = (Folder::new(), mesh.to_string_lossy().into_owned());
+    for count in ["300", "400"] {
+        let run = folder.expect(0, &["quad", &mesh, "-o", "q.obj", "--quads", count, "--json"]);
+        let report = json(&run.stdout);
+        let off = report["grid"]["quads"].as_f64().unwrap() / count.parse::<f64>().unwrap();
+        assert!((0.9..1.1).contains(&off), "{count}: {off}");
+        let irregular = report["quads"]["irregular"]["count"].as_u64().unwrap();
+        assert!(irregular < 150, "{count}: {irregular} irregular vertices");
+        assert_eq!(report["orientation"]["inverted"], 0);
+    }
+}
+
 fn collection() -> Option<PathBuf> {
     testkit::in_collection("")
 }
