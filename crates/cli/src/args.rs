@@ -152,9 +152,8 @@ fn positive(text: &str) -> Result<f64, String> {
 const LONGEST: Duration = Duration::from_secs(365 * 24 * 60 * 60);
 
 fn seconds(text: &str) -> Result<Duration, String> {
-    let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
-    let time = positive.and_then(|x| Duration::try_from_secs_f64(x).ok());
-    time.filter(|&time| time <= LONGEST).ok_or_else(|| {
+    let time = text.parse().ok().and_then(|x| Duration::try_from_secs_f64(x).ok());
+    time.filter(|&time| !time.is_zero() && time <= LONGEST).ok_or_else(|| {
         "expected a number of seconds, larger than 0 and at most a year; leave the option out for no limit".into()
     })
 }
@@ -214,7 +213,7 @@ mod tests {
     #[test]
     fn seconds_are_positive_and_finite() {
         assert_eq!(seconds("0.25"), Ok(Duration::from_millis(250)));
-        for text in ["0", "-1", "nan", "inf", "1e300", "soon", ""] {
+        for text in ["0", "7e-17", "-1", "nan", "inf", "1e300", "soon", ""] {
             assert!(seconds(text).is_err(), "{text}");
         }
     }

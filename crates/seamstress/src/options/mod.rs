@@ -29,6 +29,17 @@ mod tests {
         assert_eq!(serde_json::from_str::<QuadOptions>("{}").unwrap(), QuadOptions::default());
     }
 
+    /// Found by the fuzz target `options`: what is too short for a duration came back as none.
+    #[test]
+    fn times_are_longer_than_none() {
+        let read = |text: &str| serde_json::from_str::<MapOptions>(text).map(|o| o.polish_time);
+        assert_eq!(read(r#"{"polish_time": 1e-9}"#).unwrap(), Some(Duration::from_nanos(1)));
+        for seconds in ["7e-17", "0", "-1"] {
+            let error = read(&format!(r#"{{"polish_time": {seconds}}}"#)).unwrap_err();
+            assert!(error.to_string().starts_with("expected a number of seconds"), "{error}");
+        }
+    }
+
     #[test]
     fn unknown_and_impossible_options_are_named() {
         let unknown = serde_json::from_str::<MapOptions>(r#"{"cone_bais": 1}"#).unwrap_err();

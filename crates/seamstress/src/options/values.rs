@@ -1,12 +1,19 @@
 //! Values that options can have: checked, in JSON, and as arguments.
 
 use crate::error::Error;
+use std::time::Duration;
 
 pub(crate) fn not_negative(name: &str, value: f64) -> Result<(), Error> {
     match value.is_finite() && value >= 0.0 {
         true => Ok(()),
         false => Err(Error::options(format!("{name}: {value} is no number of 0 or larger"))),
     }
+}
+
+/// A time of so many seconds. What is shorter than half a nanosecond is none.
+fn duration(seconds: f64) -> Result<Duration, &'static str> {
+    let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
+    time.ok_or("expected a number of seconds larger than 0")
 }
 
 /// Durations in JSON: seconds.
@@ -25,13 +32,7 @@ pub(crate) mod seconds {
         deserializer: D,
     ) -> Result<Option<Duration>, D::Error> {
         let seconds = Option::<f64>::deserialize(deserializer)?;
-        let time = |seconds: f64| {
-            let time = Some(seconds).filter(|x| *x > 0.0);
-            let time = time.and_then(|x| Duration::try_from_secs_f64(x).ok());
-            time.ok_or_else(|| {
-                serde::de::Error::custom("expected a number of seconds larger than 0")
-            })
-        };
+        let time = |seconds: f64| super::duration(seconds).map_err(serde::de::Error::custom);
         seconds.map(time).transpose()
     }
 }
@@ -72,10 +73,7 @@ pub(crate) mod parse {
     }
 
     pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
-        let positive = text.parse().ok().filter(|&x: &f64| x > 0.0);
-        positive
-            .and_then(|x| Duration::try_from_secs_f64(x).ok())
-            .ok_or_else(|| "expected a number of seconds larger than 0".into())
+        super::duration(text.parse().unwrap_or(f64::NAN)).map_err(str::to_owned)
     }
 
     /// Names of objectives.
