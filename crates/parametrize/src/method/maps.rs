@@ -81,7 +81,7 @@ fn run(
             tally.add(piece, &mapped.features, &mapped.released);
             let uvs = mapped.map.corner_uvs().to_vec();
             if piece.mesh == *mesh {
-                tally.is_whole(mapped.map, mapped.alignment);
+                tally.take_whole(mapped.map, mapped.alignment);
             }
             Ok((uvs, mapped.stats))
         })?;

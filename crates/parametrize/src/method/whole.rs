@@ -35,11 +35,12 @@ impl FeatureTally {
     }
 
     /// Takes the certified map of a component that is the mesh itself.
-    pub(super) fn is_whole(&mut self, map: SeamlessMap, alignment: Alignment) {
+    pub(super) fn take_whole(&mut self, map: SeamlessMap, alignment: Alignment) {
         self.whole = Some((map, alignment));
     }
 
-    /// Certifies the map of all components, unless it is that of the only one, which is certified; if it is strict about features, none may be released.
+    /// Certifies the map of all components, unless it is that of the only one, which is certified; if it is strict about
+    /// features, none may be released.
     ///
     /// # Errors
     /// [`MapError::Released`] or [`MapError::Uncertified`].
